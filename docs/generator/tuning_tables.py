@@ -4,7 +4,7 @@
 
 from collections.abc import Iterator, Mapping
 
-from ddct_bringup.tuning.report.texts import goal_text
+from ddct_bringup.tuning.report.texts import IMPORTANCES, goal_text
 from ddct_bringup.tuning.result import FrontEntry, TuningResult
 from ddct_bringup.tuning.specification.packaged_specs import packaged_specs
 from ddct_plant.files.json_records import read_json
@@ -56,9 +56,8 @@ def _entries(result: TuningResult) -> Iterator[tuple[str, FrontEntry]]:
 
 def _effects(result: TuningResult) -> Table:
     rows = [
-        (goal.title, each.parameter, f'{each.explained:.2f}', f'{each.p_value:.3f}')
+        (goal.title, name, f'{share:.2f}')
         for goal in result.objectives
-        for each in result.sensitivity[goal.name]
+        for name, share in result.importances[goal.name].items()
     ]
-    headers = ('objective', 'parameter', 'explains', 'p')
-    return Table(f'What decides, {result.controller}', headers, rows)
+    return Table(f'What decides, {result.controller}', IMPORTANCES, rows)

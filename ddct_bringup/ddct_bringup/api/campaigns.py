@@ -13,7 +13,6 @@ from ddct_bringup.api.shell.sweeps import planned_sweep
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import INDEX
 from ddct_bringup.campaign.plan import RecordedCampaign
-from ddct_bringup.campaign.rows import result_row
 from ddct_bringup.campaign.spec import read_spec, spec_of
 from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.summary import summary_of
@@ -77,12 +76,10 @@ def sweep(
     controller, the values under their keys, every figure and metric that it alone gives, `valid`,
     `reason`, `state` and `why`.
     """
-    import pandas
-
     axes = [_axis(key, over[key]) for key in over]
     planned = planned_sweep(controllers, axes, load_limits(limits), warnings.warn, **options)
     with planned.runs() as runs:
-        return pandas.DataFrame([result_row(each.scores, each.varied) for each in runs])
+        return planned.table(list(runs)).to_pandas().set_index(INDEX)
 
 
 def _axis(key: str, values: str | Iterable[Any]) -> Axis:

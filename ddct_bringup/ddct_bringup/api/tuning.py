@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ddct_bringup.api.shell.tunings import tune_into
-from ddct_bringup.tuning.record import TRIALS, read_entries
+from ddct_bringup.campaign.arrow_columns import read_parquet
 from ddct_bringup.tuning.result import FrontEntry
-from ddct_bringup.tuning.trial import TrialEntry
+from ddct_bringup.tuning.tables import NUMBER, TRIALS
 from ddct_bringup.tuning.tuned_names import BEST
 from ddct_plant.files.json_records import to_json
 
@@ -24,7 +24,11 @@ class TuningResults(NamedTuple):
     Columns: parameters, objectives as `development.NAME` and `held_out.NAME`, and `file`.
     """
     trials: Any
-    """pandas DataFrame with a row per trial, by its number: parameters, objectives, state."""
+    """
+    pandas DataFrame with a row per trial, by its number: the columns of `trials.parquet`.
+
+    Parameters, objectives, `constraints.NAME`, `state`, `reason`, and `runs` computed.
+    """
     result: Any
     """Content of `front.json`, a dict."""
     best: Path
@@ -51,7 +55,7 @@ def tune(
     given = spec if isinstance(spec, Mapping) else str(spec)
     result = tune_into(controller, given, folder, workers=workers, resume=resume)
     front = pandas.DataFrame(_front_rows(result.front)).set_index('number')
-    tried = pandas.DataFrame(_trial_rows(read_entries(folder / TRIALS))).set_index('number')
+    tried = read_parquet(folder / TRIALS).to_pandas().set_index(NUMBER)
     return TuningResults(front, tried, to_json(result), folder / BEST)
 
 
@@ -72,18 +76,4 @@ def _front_rows(front: Sequence[FrontEntry]) -> list[dict[str, float | str | Non
             'file': each.file,
         }
         for each in front
-    ]
-
-
-def _trial_rows(trials: Sequence[TrialEntry]) -> list[dict[str, float | str | None]]:
-    return [
-        {
-            'number': each.number,
-            **each.parameters,
-            **each.objectives,
-            'state': each.state,
-            'reason': each.reason,
-            'runs': each.runs,
-        }
-        for each in trials
     ]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import pyarrow as pa
 
-from ddct_bringup.campaign.arrow_columns import numpy_column
+from ddct_bringup.campaign.arrow_columns import numpy_columns
 from ddct_bringup.campaign.columns import CONTROLLER
 from ddct_plant.base.errors import DdctError
 
@@ -33,7 +33,7 @@ class CaseRows:
         if names != [name for name in controllers for _ in range(cases)]:
             raise DdctError('the rows of controllers are not those of the same cases')
         shape = (len(controllers), cases)
-        columns = {name: numpy_column(table[name]).reshape(shape) for name in table.column_names}
+        columns = {name: each.reshape(shape) for name, each in numpy_columns(table).items()}
         return cls(controllers, columns)
 
     @property

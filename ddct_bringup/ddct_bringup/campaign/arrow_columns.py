@@ -12,7 +12,11 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.csv as arrow_csv
 import pyarrow.parquet as parquet
+
+from ddct_plant.base.errors import printable
+from ddct_plant.files.csv_table import plain_cell
 
 _NUMBERS = {pa.int64(): np.int64, pa.float64(): np.float64}
 _TYPES = (*_NUMBERS, pa.bool_(), pa.string())
@@ -87,6 +91,22 @@ def numpy_column(column: pa.ChunkedArray) -> np.ndarray:
         plain = bool if boolean and not column.null_count else object
         return np.array(column.to_pylist(), dtype=plain)
     return np.asarray(column.to_numpy())
+
+
+def numpy_columns(table: pa.Table) -> dict[str, np.ndarray]:
+    """Return the columns of a table by name, (n,) each."""
+    return {name: numpy_column(table[name]) for name in table.column_names}
+
+
+def table_csv(table: pa.Table) -> str:
+    """Return a table as CSV, with control characters in its texts escaped."""
+    for place, field in enumerate(table.schema):
+        if pa.types.is_string(field.type):
+            words = [plain_cell(printable(each or '')) for each in table[field.name].to_pylist()]
+            table = table.set_column(place, field, arrow_column(field.type, words))
+    sink = pa.BufferOutputStream()
+    arrow_csv.write_csv(table, sink)
+    return sink.getvalue().to_pybytes().decode()
 
 
 def _numbers(array: pa.Array) -> np.ndarray:

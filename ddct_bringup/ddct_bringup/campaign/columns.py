@@ -4,6 +4,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,7 @@ from ddct_bringup.campaign.rows import (
     SEED,
     SERIAL,
     STATE,
-    Row,
+    ScoredRow,
 )
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_plant.base.errors import DdctError
@@ -30,13 +31,20 @@ SCHEMA_VERSION = 4
 _COMPRESSION = 'zstd'
 _ROW_GROUP = 50_000
 """Smallest number of rows in a row group except the last: each group costs a reader memory."""
-_OUTCOME = (
-    ('valid', pa.bool_()),
-    ('reason', pa.string()),
-    (STATE, pa.string()),
-    ('why', pa.string()),
+_FIRST = (
+    (INDEX, pa.int64(), attrgetter('index')),
+    (CONTROLLER, pa.string(), attrgetter('controller')),
+    (PATH, pa.string(), attrgetter('path')),
+    (SEED, pa.int64(), attrgetter('seed')),
 )
-COMPARED = (SEED, *METRIC_COLUMNS, *(name for name, _ in _OUTCOME))
+_OUTCOME = (
+    ('valid', pa.bool_(), attrgetter('scores.valid')),
+    ('reason', pa.string(), attrgetter('scores.reason')),
+    (STATE, pa.string(), attrgetter('scores.state')),
+    ('why', pa.string(), attrgetter('scores.why')),
+)
+_OF_RUN = {name: value for name, _, value in (*_FIRST, *_OUTCOME)}
+COMPARED = (SEED, *METRIC_COLUMNS, *(name for name, *_ in _OUTCOME))
 """Columns that a repeated run is compared in with its row."""
 VECTORISED_RTOL = 1e-9
 """Largest difference of a row of the vectorised path, relative to the larger value."""
@@ -46,29 +54,49 @@ VECTORISED_ATOL = {'slip_final_rpm': 1e-6, 'lockup_slip_acceleration_rad_s2': 1e
 
 def schema_of(spec: CampaignSpec) -> pa.Schema:
     """Return the columns of a campaign; each varied key has one under its dotted name."""
+    whole = [key for key, each in spec.vary.items() if each.whole]
+    return schema_over({key: spec.values_of(key) for key in spec.keys}, whole)
+
+
+def schema_over(varied: Mapping[str, Sequence[Any]], whole: Sequence[str] = ()) -> pa.Schema:
+    """
+    Return the columns of runs over the values of keys.
+
+    A key without values has numbers, or whole numbers if it is one of `whole`.
+    """
     fields = [
-        (INDEX, pa.int64()),
-        (CONTROLLER, pa.string()),
-        (PATH, pa.string()),
-        (SEED, pa.int64()),
-        *((key, _type(spec, key)) for key in spec.keys if key != SEED),
+        *((name, kind) for name, kind, _ in _FIRST),
+        *(
+            (key, pa.int64() if key in whole else _type(values))
+            for key, values in varied.items()
+            if key != SEED
+        ),
         *((name, pa.float64()) for name in METRIC_COLUMNS),
-        *_OUTCOME,
+        *((name, kind) for name, kind, _ in _OUTCOME),
     ]
     return pa.schema(fields, {'schema_version': str(SCHEMA_VERSION)})
 
 
-def rows_table(schema: pa.Schema, rows: Sequence[Row]) -> pa.Table:
-    """Return rows as a table."""
-    columns = [arrow_column(field.type, [row[field.name] for row in rows]) for field in schema]
+def runs_table(schema: pa.Schema, runs: Sequence[ScoredRow]) -> pa.Table:
+    """Return a row for each run, with these columns."""
+    columns = [arrow_column(field.type, _values(runs, field.name)) for field in schema]
     return pa.Table.from_arrays(columns, schema=schema)
+
+
+def _values(runs: Sequence[ScoredRow], name: str) -> list[Any]:
+    if name in _OF_RUN:
+        return [_OF_RUN[name](run) for run in runs]
+    if name in METRIC_COLUMNS:
+        return [run.scores.metrics[name] for run in runs]
+    return [run.varied[name] for run in runs]
 
 
 def parquet_bytes(table: pa.Table, groups: int = 1) -> bytes:
     """Return a table as a Parquet file of so many groups of rows, the same for the same rows."""
     sink = pa.BufferOutputStream()
     in_group = max(len(table) // groups, 1)
-    parquet.write_table(table, sink, compression=_COMPRESSION, row_group_size=in_group)
+    whole = table.combine_chunks()
+    parquet.write_table(whole, sink, compression=_COMPRESSION, row_group_size=in_group)
     return sink.getvalue().to_pybytes()
 
 
@@ -160,13 +188,11 @@ def _same(ours: Any, theirs: Any, rtol: float, atol: float) -> bool:
     return ours == theirs
 
 
-def _type(spec: CampaignSpec, key: str) -> pa.DataType:
-    values = spec.values_of(key)
+def _type(values: Sequence[Any]) -> pa.DataType:
     if any(isinstance(value, (str, list, tuple, Mapping)) for value in values):
         return pa.string()
     if values and all(isinstance(value, bool) for value in values):
         return pa.bool_()
-    whole = key in spec.vary and spec.vary[key].whole
-    if whole or (values and all(isinstance(value, int) for value in values)):
+    if values and all(isinstance(value, int) for value in values):
         return pa.int64()
     return pa.float64()

@@ -1,8 +1,9 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""One of many runs: its scores without a bag, and its row."""
+"""One of many runs: its scores without a bag."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from ddct_bringup.bag.run_facts import RunFacts
@@ -21,14 +22,28 @@ from ddct_plant.scenario.settings import RunSettings
 
 INDEX, CONTROLLER, PATH, SEED = 'index', 'controller', 'path', 'seed'
 """Columns of a row before those of the varied keys."""
-Row = Mapping[str, Any]
-"""Row of `results.parquet`: values by column."""
 SERIAL, VECTORISED = 'serial', 'vectorised'
 """Values of the column `path`: simulated step by step, or together with other runs."""
 STATE = 'state'
 """Column of the state of a run."""
 METRIC_COLUMNS = tuple(metric.key for metric in REPEATABLE)
 """Figures and metrics of `scores.json` that a run alone gives, equal in every repetition."""
+
+
+@dataclass(frozen=True)
+class ScoredRow:
+    """A run of a set with its scores, and the values that distinguish it from the others."""
+
+    index: int
+    controller: str
+    seed: int
+    """Seed of the random numbers within the run."""
+    varied: Mapping[str, Any]
+    """Values by key, as they were given."""
+    scores: ScoredRun
+    """Scores; of a run that was computed at once without facts and bag."""
+    path: str
+    """Path of the computation: `serial` or `vectorised`."""
 
 
 def require_suitable(controller: Chosen, settings: RunSettings) -> None:
@@ -61,17 +76,3 @@ def scored_headless(settings: RunSettings, controller: Chosen, limits: Limits) -
         return score_run(recording, name, limits, RunTiming())
     facts = RunFacts.of(settings, name, settings.scenario.steps)
     return run_without_score(name, facts, reason)
-
-
-def result_row(run: ScoredRun, varied: Mapping[str, Any], path: str = SERIAL) -> Row:
-    """Return a run as one row: controller, path, varied values, figures, metrics and state."""
-    return {
-        CONTROLLER: run.controller,
-        PATH: path,
-        **varied,
-        **{name: run.metrics[name] for name in METRIC_COLUMNS},
-        'valid': run.valid,
-        'reason': run.reason,
-        STATE: run.state,
-        'why': run.why,
-    }

@@ -2,11 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Score the runs of a run set: linear ones at once, all others step by step."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import chain
-from typing import Any
 
 import numpy as np
 
@@ -14,16 +13,7 @@ from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.batch.batchable import why_not_batchable
 from ddct_bringup.batch.run_batch import run_batch
 from ddct_bringup.campaign.campaign import Campaign
-from ddct_bringup.campaign.rows import (
-    CONTROLLER,
-    INDEX,
-    SEED,
-    SERIAL,
-    VECTORISED,
-    Row,
-    result_row,
-    scored_headless,
-)
+from ddct_bringup.campaign.rows import SERIAL, VECTORISED, ScoredRow, scored_headless
 from ddct_bringup.campaign.run_set import ImpossibleRow, PlannedRow, RunSet
 from ddct_bringup.many_runs.blocks import block_size, blocks_of
 from ddct_bringup.many_runs.engine import engine_of
@@ -33,28 +23,6 @@ from ddct_bringup.scores.scoring import run_without_score
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import FOREIGN_FAILURES
-
-
-@dataclass(frozen=True)
-class ScoredRow:
-    """A run of the set with its scores, and the values that distinguish it from the others."""
-
-    index: int
-    controller: str
-    seed: int
-    """Seed of the random numbers within the run."""
-    varied: Mapping[str, Any]
-    """Values by key, as they were given."""
-    scores: ScoredRun
-    """Scores; of a run that was computed at once without facts and bag."""
-    path: str
-    """Path of the computation: `serial` or `vectorised`."""
-
-    def row(self) -> Row:
-        """Return the row of the run, by the columns of `results.parquet`."""
-        ours = {INDEX: self.index, SEED: self.seed}
-        row = result_row(self.scores, self.varied, self.path)
-        return {**ours, **row, CONTROLLER: self.controller}
 
 
 @dataclass

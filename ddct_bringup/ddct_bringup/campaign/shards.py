@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import pyarrow as pa
 
 from ddct_bringup.campaign.campaign import Campaign
-from ddct_bringup.campaign.columns import rows_table, schema_of
+from ddct_bringup.campaign.columns import runs_table, schema_of
 from ddct_bringup.campaign.scored import Scorer, are_together
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.campaign.specification.named_files import digest_of
@@ -73,7 +73,7 @@ class CampaignWork(Work[int, pa.Table]):
         require_code(self.code)
         campaign, scorer = self._prepared()
         found = scorer.scored(campaign.planned_at(items))
-        rows = rows_table(schema_of(self.spec), [each.row() for each in found])
+        rows = runs_table(schema_of(self.spec), found)
         self._require_unchanged()  # each run has read its handover file anew
         return rows
 
@@ -85,7 +85,7 @@ class CampaignWork(Work[int, pa.Table]):
         """Return the row of a run that ends its process."""
         campaign, scorer = self._prepared()
         (run,) = campaign.planned_at([item])
-        return rows_table(schema_of(self.spec), [scorer.without_result(run, why).row()])
+        return runs_table(schema_of(self.spec), [scorer.without_result(run, why)])
 
     def error(self, items: Sequence[int], error: Exception) -> Exception:
         """Return a DdctError that names the first run of the shard."""

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 
-from ddct_bringup.campaign.arrow_columns import numpy_column, read_parquet
+from ddct_bringup.campaign.arrow_columns import numpy_column, numpy_columns, read_parquet
 from ddct_bringup.campaign.columns import COMPARED, CONTROLLER, INDEX, PATH, SCHEMA_VERSION
 from ddct_bringup.campaign.conduct import RESULTS
 from ddct_bringup.campaign.keys import COMMON, option_of
@@ -92,7 +92,7 @@ def _require_single(table: pa.Table) -> None:
 
 def results_of(recorded: RecordedCampaign, table: pa.Table) -> Results:
     """Return the results from the rows and the manifest."""
-    columns = {name: numpy_column(table[name]) for name in table.column_names}
+    columns = numpy_columns(table)
     expected = (*REQUIRED, PATH, *COMPARED, *recorded.plan.grid, *recorded.plan.random)
     absent = tuple(name for name in COMPARED if name not in columns)
     unknown = tuple(name for name in columns if name not in expected)

@@ -77,7 +77,7 @@ def _sweep(argv: list[str]) -> int:
     if options.json:
         shell.write_json(options.json, shell.sweep_document(sweep, runs))
     if options.csv:
-        write_text(options.csv, shell.sweep_csv(runs))
+        write_text(options.csv, shell.table_csv(sweep.table(runs)))
     stream = sys.stderr if STDOUT in (options.json, options.csv) else sys.stdout
     shell.print_table(shell.sweep_table(sweep, runs, metrics), stream)
     for text in shell.sweep_notes(runs):

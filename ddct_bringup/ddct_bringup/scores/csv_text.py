@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scores and signals as CSV."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -29,11 +29,7 @@ _OF_JOINTS = (JOINT_STATES, SENSED_JOINT_STATES)
 
 def scores_csv(runs: Sequence[ScoredRun]) -> str:
     """Return the scores as CSV, one row per run: facts, metrics and state."""
-    return rows_csv([score_row(run) for run in runs])
-
-
-def rows_csv(rows: Sequence[Mapping[str, Cell]]) -> str:
-    """Return rows of equal columns, at least one, as CSV below the names of the columns."""
+    rows = [score_row(run) for run in runs]
     return csv_text(rows[0], ([_text(value) for value in row.values()] for row in rows))
 
 

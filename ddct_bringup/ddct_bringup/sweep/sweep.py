@@ -9,12 +9,14 @@ from functools import cached_property
 from math import prod
 from typing import Any
 
-from ddct_bringup.campaign.rows import result_row
+import pyarrow as pa
+
+from ddct_bringup.campaign.columns import runs_table, schema_over
+from ddct_bringup.campaign.rows import ScoredRow
 from ddct_bringup.campaign.run_set import RunSet
-from ddct_bringup.campaign.scored import ScoredRow, scored_runs
+from ddct_bringup.campaign.scored import scored_runs
 from ddct_bringup.metrics.metric import Metric
 from ddct_bringup.run.run_base import RunBase
-from ddct_bringup.scores.csv_text import rows_csv
 from ddct_bringup.scores.document import run_entry
 from ddct_bringup.scores.run_table import CONTROLLER, STATE, RunColumn, metric
 from ddct_bringup.scores.shift_conditions import shift_conditions
@@ -98,6 +100,10 @@ class Sweep:
         """Return the number of runs."""
         return self.run_set.runs
 
+    def table(self, runs: Sequence[ScoredRow]) -> pa.Table:
+        """Return a row for each run, with the columns of a campaign."""
+        return runs_table(schema_over({axis.key: axis.values for axis in self.axes}), runs)
+
     def runs(self) -> AbstractContextManager[Iterator[ScoredRow]]:
         """
         Carry out all runs on all cores as the iterator is consumed; see `scored_runs`.
@@ -128,11 +134,6 @@ def sweep_document(sweep: Sweep, runs: Sequence[ScoredRow]) -> Mapping[str, Any]
 def _row(run: ScoredRow) -> Mapping[str, Any]:
     entry = to_json(run_entry(run.scores))
     return {OVER: run.varied, **{key: value for key, value in entry.items() if key != 'bag'}}
-
-
-def sweep_csv(runs: Sequence[ScoredRow]) -> str:
-    """Return the text of `--csv`: a row per run, with the columns of a campaign."""
-    return rows_csv([result_row(run.scores, run.varied) for run in runs])
 
 
 def sweep_table(sweep: Sweep, runs: Sequence[ScoredRow], metrics: Sequence[Metric]) -> Table:

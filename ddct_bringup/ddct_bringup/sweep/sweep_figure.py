@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ddct_bringup.campaign.scored import ScoredRow
+from ddct_bringup.campaign.rows import ScoredRow
 from ddct_bringup.report.page_parts import unit_text
 from ddct_bringup.sweep.state_map import (
     draw_states,

@@ -25,12 +25,12 @@ from ddct_bringup.tuning.evaluation import TrialRuns, evaluation
 from ddct_bringup.tuning.front import dominates, why_all_invalid
 from ddct_bringup.tuning.loop_quantities import update_time
 from ddct_bringup.tuning.plan import RecordedTuning, TuningPlan
-from ddct_bringup.tuning.record import batch_files, read_batch, write_batch
-from ddct_bringup.tuning.search import BATCH, Search, require_optuna
 from ddct_bringup.tuning.specification.development import parts_of
 from ddct_bringup.tuning.specification.goals import UPDATE_TIME
 from ddct_bringup.tuning.specification.parameters import Values
-from ddct_bringup.tuning.trial import DOMINATED, FEASIBLE, Trial
+from ddct_bringup.tuning.study import BATCH, TuningStudy, require_optuna
+from ddct_bringup.tuning.tables import batch_file, rows_by_trial, write_batch
+from ddct_bringup.tuning.trial import DOMINATED, FEASIBLE, NO_ROWS, Trial
 from ddct_bringup.tuning.tuning import Tuning
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program.command_line import complain
@@ -58,11 +58,12 @@ def carry_out_tuning(
     invalid; KeyboardInterrupt when `stopped()` becomes true. What is done stays, and `resume`
     continues with it. `known_times` are update times by trial that are not measured again.
     """
-    search = Search(tuning.spec, tuning.present)
+    require_optuna()
     with locked_folders(out):
         recorded, manifest = _begin(tuning, out, resume=resume)
+        study = TuningStudy(recorded.spec, recorded.present, out)
         with evaluation(recorded, workers, stopped) as computed:
-            return _Search(recorded, out, search, computed, manifest, known_times).trials()
+            return _Search(recorded, out, study, computed, manifest, known_times).trials()
 
 
 def _begin(tuning: Tuning, out: Path, *, resume: bool) -> tuple[Tuning, Manifest]:
@@ -91,7 +92,7 @@ class _Search:
 
     tuning: Tuning
     out: Path
-    search: Search
+    study: TuningStudy
     computed: TrialRuns
     manifest: Manifest
     """Manifest with the digests of the batches that were recorded before."""
@@ -108,34 +109,41 @@ class _Search:
         found: list[Trial] = []
         for batch, size in enumerate(batches_of(spec.trials)):
             require_going_on(self.computed.engine.stopped)
-            suggested = self.search.ask(size)
-            trials = self._recorded(batch)
+            suggested = self.study.ask(batch, size)
+            trials = self._recorded(batch, suggested)
             if trials is None:
                 trials = computed_batch(self.tuning, self.computed, suggested, found, self._timed)
-                write_batch(self.out, batch, trials, spec, self.tuning.campaign.spec)
-                keep_digests(batch_files(self.out, batch))
-            elif {each.number: dict(each.values) for each in trials} != suggested:
-                raise DdctError(
-                    f'{self.out} has other trials than this search gives: it was altered, or '
-                    'computed with another Optuna: choose another --out',
-                    key='--out',
-                )
-            self.search.tell(trials)
+                write_batch(self.out, batch, trials, self.tuning.campaign.spec)
+                keep_digests([batch_file(self.out, batch)])
+                self.study.add(trials)
             found += trials
             progress.update(len(found))
             if len(found) >= _HOPELESS and (why := why_all_invalid(found)):
                 raise DdctError(f'{why}: mend the controller, or its ranges; {RESUME}')
         return found
 
-    def _recorded(self, batch: int) -> list[Trial] | None:
-        """Return the trials of a batch that was recorded before; report one that was altered."""
-        names = [file.relative_to(self.out).as_posix() for file in batch_files(self.out, batch)]
-        if not all(name in self.manifest.files for name in names):
+    def _recorded(self, batch: int, suggested: Mapping[int, Values]) -> list[Trial] | None:
+        """
+        Return the trials of a batch that was recorded before, None for one that is not complete.
+
+        Report one that was altered; raise DdctError where the study has other trials.
+        """
+        trials = self.study.trials[batch * BATCH :][: len(suggested)]
+        if any(dict(each.values) != suggested[each.number] for each in trials):
+            raise DdctError(
+                f'{self.out} has other trials than this search gives: it was altered, or '
+                'computed with another Optuna: choose another --out',
+                key='--out',
+            )
+        file = batch_file(self.out, batch)
+        name = file.relative_to(self.out).as_posix()
+        if len(trials) < len(suggested) or name not in self.manifest.files:
             return None
-        if altered := altered_files(self.out, self.manifest, names):
-            complain(PROGRAM, f'{altered[0]}: altered since it was computed: it is computed again')
+        if altered_files(self.out, self.manifest, [name]):
+            complain(PROGRAM, f'{file}: altered since it was computed: it is computed again')
             return None
-        return read_batch(self.out, batch)
+        rows = rows_by_trial(file)
+        return [replace(each, rows=rows.get(each.number, NO_ROWS)) for each in trials]
 
     def _timed(self, trial: Trial) -> Trial:
         """Return a trial with its update time, where a constraint needs it."""
@@ -179,7 +187,7 @@ def computed_batch(
         going = [each for each in trials if each.state == FEASIBLE or _is_present(tuning, each)]
         rows = computed.rows([(each.values, case) for each in going for case in part])
         for place, each in enumerate(going):
-            of_trial = rows[place * len(part) : (place + 1) * len(part)]
+            of_trial = rows.slice(place * len(part), len(part))
             trials[trials.index(each)] = _ended(tuning, each.with_rows(of_trial), rivals)
     return [
         timed(each).checked(spec, len(cases)) if each.state == FEASIBLE else each

@@ -7,10 +7,14 @@ from contextlib import closing, contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
-from typing import Any
+from typing import TypeAlias
 
+import pyarrow as pa
+
+from ddct_bringup.campaign.arrow_columns import arrow_column
+from ddct_bringup.campaign.columns import runs_table, schema_of
 from ddct_bringup.campaign.conduct import RESUME
-from ddct_bringup.campaign.rows import INDEX, Row
+from ddct_bringup.campaign.rows import ScoredRow
 from ddct_bringup.campaign.run_set import ImpossibleRow, PlannedRow
 from ddct_bringup.campaign.scored import Scorer, are_together
 from ddct_bringup.many_runs.blocks import block_size, blocks_of
@@ -25,7 +29,7 @@ PlannedCase = tuple[Values, int]
 """Values of a trial, and the number of one of its cases."""
 Asked = Values | PlannedCase
 """What a trial needs: its loop, by its values, or one of its runs."""
-Found = list[Any]
+Found: TypeAlias = 'list[Quantities] | pa.Table'
 """The quantities of each loop, or the row of each run."""
 
 
@@ -47,22 +51,28 @@ class TrialWork(Work[Asked, Found]):
 
     def joined(self, parts: Sequence[Found]) -> Found:
         """Return what was found in all parts."""
-        return [*chain.from_iterable(parts)]
+        tables = [part for part in parts if isinstance(part, pa.Table)]
+        return pa.concat_tables(tables) if tables else [*chain.from_iterable(parts)]
 
     def without_result(self, item: Asked, why: str) -> Found:
         """Return a loop without quantities, or a row with the reason."""
         if isinstance(item, Mapping):
             return [dict.fromkeys(OF_LOOP)]
-        return [self.scorer.without_result(self._planned(item), why).row()]
+        return self._table([self.scorer.without_result(self._planned(item), why)])
 
     def _loop(self, values: Values) -> Quantities:
         campaign, tuning = self.tuning.with_values(values), self.tuning
         return loop_quantities(campaign, tuning.cases, tuning.spec.goals)
 
-    def _rows(self, runs: Sequence[PlannedCase]) -> list[Row]:
+    def _rows(self, runs: Sequence[PlannedCase]) -> pa.Table:
         planned = [replace(self._planned(run), index=place) for place, run in enumerate(runs)]
         scored = self.scorer.scored(planned)
-        return [{**each.row(), INDEX: case} for each, (_, case) in zip(scored, runs, strict=True)]
+        return self._table(
+            [replace(each, index=case) for each, (_, case) in zip(scored, runs, strict=True)]
+        )
+
+    def _table(self, runs: Sequence[ScoredRow]) -> pa.Table:
+        return runs_table(schema_of(self.tuning.campaign.spec), runs)
 
     def _planned(self, run: PlannedCase) -> PlannedRow | ImpossibleRow:
         values, case = run
@@ -91,18 +101,19 @@ class TrialRuns:
 
     def loops(self, values: Sequence[Values]) -> list[Quantities]:
         """Return the quantities of the loop of each trial that the goals need."""
-        return self._found(values, together=False)
+        return [*chain.from_iterable(self._found(values, together=False))]
 
-    def rows(self, runs: Sequence[PlannedCase]) -> list[Row]:
+    def rows(self, runs: Sequence[PlannedCase]) -> pa.Table:
         """Return the rows of runs in their order; runs of one case are computed together."""
         places = sorted(range(len(runs)), key=lambda place: runs[place][1])
-        rows = self._found([runs[place] for place in places], together=self.together)
-        by_place = dict(zip(places, rows, strict=True))
-        return [by_place[place] for place in range(len(runs))]
+        parts = self._found([runs[place] for place in places], together=self.together)
+        none = schema_of(self.tuning.campaign.spec).empty_table()
+        order = sorted(range(len(runs)), key=lambda at: places[at])
+        return pa.concat_tables([none, *parts]).take(arrow_column(pa.int64(), order))
 
-    def _found(self, items: Sequence[Asked], *, together: bool) -> Found:
+    def _found(self, items: Sequence[Asked], *, together: bool) -> Iterator[Found]:
         blocks = blocks_of(items, block_size(len(items), together=together))
-        return [*chain.from_iterable(self.engine.in_order(blocks))]
+        return self.engine.in_order(blocks)
 
 
 @contextmanager

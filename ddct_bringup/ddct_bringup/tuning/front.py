@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The front of a tuning, the best trial on it, and why there is none."""
+"""The best trial of the front of a tuning, and why there is none."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -8,27 +8,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from ddct_bringup.tuning.specification.spec import TuningSpec
-from ddct_bringup.tuning.trial import FEASIBLE, INFEASIBLE, Trial
+from ddct_bringup.tuning.trial import INFEASIBLE, Trial
 
 
 def dominates(first: Sequence[float], second: Sequence[float]) -> bool:
     """Return whether the first costs are nowhere above the second ones, and below in one."""
     pairs = list(zip(first, second, strict=True))
     return all(ours <= theirs for ours, theirs in pairs) and any(a < b for a, b in pairs)
-
-
-def front_of(trials: Sequence[Trial], spec: TuningSpec) -> list[Trial]:
-    """Return the feasible trials that no other feasible one dominates, by the first objective."""
-    costs = {
-        each.number: each.costs(spec, len(each.rows)) for each in trials if each.state == FEASIBLE
-    }
-    front = [
-        each
-        for each in trials
-        if each.number in costs
-        and not any(dominates(other, costs[each.number]) for other in costs.values())
-    ]
-    return sorted(front, key=lambda each: (costs[each.number], each.number))
 
 
 def best_of(front: Sequence[Trial], spec: TuningSpec) -> Trial:
@@ -47,10 +33,11 @@ def best_of(front: Sequence[Trial], spec: TuningSpec) -> Trial:
 
 def why_all_invalid(trials: Sequence[Trial]) -> str:
     """Return the most frequent reason if every run of every trial is invalid, else nothing."""
-    rows = [row for each in trials for row in each.rows]
-    if not rows or any(row['valid'] for row in rows):
+    tables = [each.rows for each in trials if len(each.rows)]
+    if not tables or any(True in table['valid'].to_pylist() for table in tables):
         return ''
-    reason, _ = Counter(str(row['reason']) for row in rows).most_common(1)[0]
+    reasons = (reason for table in tables for reason in table['reason'].to_pylist())
+    reason, _ = Counter(reasons).most_common(1)[0]
     return f'every run of all {len(trials)} trials is invalid, such as: {reason}'
 
 

@@ -9,11 +9,13 @@ The seed follows from the digests of the tuned controllers and of the release, a
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
+import pyarrow.compute as compute
+
 from ddct_bringup.benchmark.judged import seed_of
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.conduct import carry_out_part
 from ddct_bringup.campaign.plan import CampaignPlan, RecordedCampaign
-from ddct_bringup.campaign.rows import CONTROLLER, Row
+from ddct_bringup.campaign.rows import CONTROLLER
 from ddct_bringup.campaign_report.reading import read_table
 from ddct_bringup.manifest.limits import NamedLimits
 from ddct_bringup.manifest.manifest import add_campaign, file_digest
@@ -74,10 +76,9 @@ def compute_held_out(
 def held_out_trials(tuning: Tuning, out: Path, judged: Sequence[Trial]) -> Mapping[int, Trial]:
     """Return the judged trials with their rows of the held-out cases, by number."""
     folder = out / HELD_OUT
-    rows: dict[str, list[Row]] = {}
-    for row in read_table(folder, RecordedCampaign.read(folder)).to_pylist():
-        rows.setdefault(row[CONTROLLER], []).append(row)
-    return {
-        each.number: Trial(each.number, each.values, rows[trial_name(tuning, each)], each.further)
-        for each in judged
-    }
+    table = read_table(folder, RecordedCampaign.read(folder))
+    found = {}
+    for each in judged:
+        rows = table.filter(compute.equal(table[CONTROLLER], trial_name(tuning, each)))
+        found[each.number] = Trial(each.number, each.values, rows, each.further)
+    return found

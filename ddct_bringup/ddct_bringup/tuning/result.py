@@ -10,19 +10,17 @@ import numpy as np
 
 from ddct_bringup.benchmark.comparison import gaps_between
 from ddct_bringup.benchmark.result_types import Gap
-from ddct_bringup.benchmark.statistics.case_figures import FIGURES
-from ddct_bringup.campaign.keys import SCENARIO
-from ddct_bringup.campaign.rows import STATE, Row
-from ddct_bringup.tuning.front import best_of, front_of
-from ddct_bringup.tuning.sensitivity import ParameterEffect, effects_on
-from ddct_bringup.tuning.specification.goals import MINIMISE, RunColumns
+from ddct_bringup.campaign.arrow_columns import numpy_columns
+from ddct_bringup.tuning.front import best_of
+from ddct_bringup.tuning.specification.goals import RunColumns
 from ddct_bringup.tuning.specification.spec import TuningSpec
+from ddct_bringup.tuning.study import TuningStudy
 from ddct_bringup.tuning.trial import FEASIBLE, Trial
 from ddct_bringup.tuning.tuned_files import trial_file
 from ddct_bringup.tuning.tuned_names import BEST
 from ddct_bringup.tuning.tuning import Tuning
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 """Schema version of `front.json`."""
 
 
@@ -100,17 +98,20 @@ class TuningResult:
     """The first trial, if it has the values from before the tuning."""
     gaps: list[Gap]
     """Differences of the best trial between development and held-out cases, tested."""
-    sensitivity: Mapping[str, list[ParameterEffect]]
-    convergence: Mapping[str, list[float | None]]
-    """By objective the best feasible value after each trial, None before the first."""
+    importances: Mapping[str, Mapping[str, float]]
+    """By objective how much each parameter decides it, the most first; their sum is 1."""
 
 
 def result_of(
-    tuning: Tuning, trials: Sequence[Trial], held_out: Mapping[int, Trial], seed: int
+    tuning: Tuning,
+    study: TuningStudy,
+    trials: Sequence[Trial],
+    held_out: Mapping[int, Trial],
+    seed: int,
 ) -> TuningResult:
     """Return the result; `held_out` has the trials of the held-out cases, `seed` drew those."""
     spec = tuning.spec
-    front = front_of(trials, spec)
+    front = [trials[number] for number in study.front()]
     best = best_of(front, spec)
     return TuningResult(
         schema_version=SCHEMA_VERSION,
@@ -131,9 +132,10 @@ def result_of(
         best_file=BEST,
         front=[_entry(spec, each, held_out.get(each.number)) for each in front],
         before=_entry(spec, trials[0], held_out.get(0)) if tuning.present else None,
-        gaps=gaps_between(*(_columns(each.rows) for each in (best, held_out[best.number]))),
-        sensitivity={goal.name: effects_on(goal, trials, spec) for goal in spec.objectives},
-        convergence=_convergence(spec, trials),
+        gaps=gaps_between(*(numpy_columns(e.rows) for e in (best, held_out[best.number]))),
+        importances={
+            goal.name: study.importances(place) for place, goal in enumerate(spec.objectives)
+        },
     )
 
 
@@ -167,41 +169,12 @@ def _entry(spec: TuningSpec, trial: Trial, held_out: Trial | None) -> FrontEntry
 
 
 def _figures(spec: TuningSpec, trial: Trial) -> Figures:
-    entry = trial.entry(spec)
-    columns = RunColumns.of(trial.rows, (), 0)
+    engaged = RunColumns.of(trial.rows, (), 0).engaged
     checked = Trial(trial.number, trial.values, trial.rows, trial.further)
     return Figures(
-        objectives=entry.objectives,
-        constraints=entry.constraints,
-        engaged=float(np.mean(columns.engaged)) if len(trial.rows) else 0.0,
+        objectives={each.name: trial.estimate(each, spec) for each in spec.objectives},
+        constraints={each.goal.name: trial.estimate(each.goal, spec) for each in spec.constraints},
+        engaged=float(np.mean(engaged)) if len(engaged) else 0.0,
         runs=len(trial.rows),
         keeps_constraints=checked.checked(spec, len(trial.rows)).state == FEASIBLE,
     )
-
-
-def _columns(rows: Sequence[Row]) -> dict[str, np.ndarray]:
-    """Return the columns that decide about gaps, (runs,) each."""
-    names = [name for figure in FIGURES for name in figure.columns]
-    return {
-        'valid': np.array([row['valid'] for row in rows], dtype=bool),
-        **{
-            name: np.array([row[name] for row in rows], dtype=object)
-            for name in (STATE, SCENARIO)
-            if name in rows[0]
-        },
-        **{name: np.array([row[name] for row in rows], dtype=float) for name in names},
-    }
-
-
-def _convergence(spec: TuningSpec, trials: Sequence[Trial]) -> dict[str, list[float | None]]:
-    found: dict[str, list[float | None]] = {}
-    for goal in spec.objectives:
-        better = min if goal.sense == MINIMISE else max
-        best: float | None = None
-        found[goal.name] = []
-        for each in trials:
-            value = each.estimate(goal, spec) if each.state == FEASIBLE else None
-            if value is not None:
-                best = value if best is None else better(best, value)
-            found[goal.name].append(best)
-    return found

@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """A trial: its values, how far it ran, and what its goals and constraints came to."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal, get_args
 
-from ddct_bringup.campaign.rows import Row
+import pyarrow as pa
+
 from ddct_bringup.tuning.specification.goals import MINIMISE, Goal, RunColumns
 from ddct_bringup.tuning.specification.parameters import Values
 from ddct_bringup.tuning.specification.spec import TuningSpec
@@ -19,39 +20,27 @@ States of a trial: it keeps all constraints; it breaks one, or has no value of a
 was ended because another one is better in every objective, whatever its other runs come to.
 """
 
-
-@dataclass(frozen=True)
-class TrialEntry:
-    """A trial in `trials.json`."""
-
-    number: int
-    parameters: Mapping[str, float]
-    state: State
-    reason: str
-    """What ended it or makes it infeasible; empty for a feasible one."""
-    runs: int
-    """Number of its runs that were computed."""
-    objectives: Mapping[str, float | None]
-    """Values over these runs; None for an undefined one."""
-    constraints: Mapping[str, float | None]
-    further: Mapping[str, float | None]
-    """Quantities of its loop and its update time."""
+NO_ROWS = pa.table({})
+"""Rows of a trial without runs."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Trial:
-    """A trial with the rows of its runs so far."""
+    """A trial: its values, its runs so far, and what they come to."""
 
     number: int
     values: Values
-    rows: Sequence[Row] = ()
+    rows: pa.Table = field(default_factory=lambda: NO_ROWS)
+    """Rows of its runs so far, with the columns of a campaign."""
     further: Mapping[str, float | None] = field(default_factory=dict)
+    """Quantities of its loop and its update time."""
     state: State = FEASIBLE
     reason: str = ''
+    """What ended it or makes it infeasible; empty for a feasible one."""
 
-    def with_rows(self, rows: Sequence[Row]) -> 'Trial':
+    def with_rows(self, rows: pa.Table) -> 'Trial':
         """Return the trial with further runs."""
-        return replace(self, rows=[*self.rows, *rows])
+        return replace(self, rows=pa.concat_tables([self.rows, rows]) if len(self.rows) else rows)
 
     def ended(self, state: State, reason: str) -> 'Trial':
         """Return the trial in another state."""
@@ -100,18 +89,3 @@ class Trial:
         if not goal.of_runs:
             return self.further.get(goal.name)
         return goal.value(self._columns(spec, len(self.rows))) if self.rows else None
-
-    def entry(self, spec: TuningSpec) -> TrialEntry:
-        """Return the trial as JSON."""
-        return TrialEntry(
-            number=self.number,
-            parameters=dict(self.values),
-            state=self.state,
-            reason=self.reason,
-            runs=len(self.rows),
-            objectives={each.name: self.estimate(each, spec) for each in spec.objectives},
-            constraints={
-                each.goal.name: self.estimate(each.goal, spec) for each in spec.constraints
-            },
-            further=dict(self.further),
-        )

@@ -22,6 +22,7 @@ from ddct_bringup.manifest.manifest import MANIFEST, RUNS, Manifest, files_in, r
 from ddct_bringup.run.execution import WORK_FOLDER
 from ddct_bringup.run.output_folder import MARKER
 from ddct_bringup.run.timing_and_failure import NOTE_FILE, TIMING_FILE
+from ddct_bringup.tuning.study import JOURNAL
 from ddct_bringup.verification.comparison import Comparison, plain_json, recorded_json
 from ddct_bringup.verification.repetition import Repeated
 from ddct_bringup.verification.result import RepetitionResult
@@ -39,6 +40,7 @@ OF_CODE = frozenset(
 """Keys, at whatever place in a file, that another code writes otherwise."""
 _FOLDERS = re.compile(r'[^\s(]*/')
 """Folders of a path in a text, which are others in a scratch folder."""
+_WALL_CLOCK = (TIMING_FILE, JOURNAL)
 _LATER = 'written later by another program'
 _PAGE = 'made again, but not compared'
 _SHOWN = 30
@@ -104,7 +106,7 @@ class FileComparison:
         # Signals first: the settings are in a bag and in its metadata.
         for path in sorted(paths, key=lambda path: not path.endswith(BAG_SUFFIX)):
             inner = PurePosixPath(path).relative_to(run)
-            if inner.name == TIMING_FILE or inner.parts[0] == WORK_FOLDER:
+            if inner.name in _WALL_CLOCK or inner.parts[0] == WORK_FOLDER:
                 self.wall_clock.add(inner.name)
                 continue
             if not (self.scratch / path).exists() and not run:

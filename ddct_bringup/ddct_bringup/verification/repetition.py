@@ -36,11 +36,11 @@ from ddct_bringup.scores.document import scores_document
 from ddct_bringup.scores.floors import with_floors
 from ddct_bringup.scores.scored_recording import score_any_bag
 from ddct_bringup.tuning.conduct import carry_out_tuning
-from ddct_bringup.tuning.front import front_of
 from ddct_bringup.tuning.plan import RecordedTuning
-from ddct_bringup.tuning.record import TRIALS, read_entries
 from ddct_bringup.tuning.report.folder import write_tuning
 from ddct_bringup.tuning.specification.goals import UPDATE_TIME
+from ddct_bringup.tuning.study import read_trials
+from ddct_bringup.tuning.trial import FEASIBLE
 from ddct_bringup.verification.comparison import Comparison
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, without_folders
@@ -217,7 +217,7 @@ def _repeat_tuning(
     recorded = RecordedTuning.of(manifest, result)
     times = {
         each.number: {UPDATE_TIME: each.further[UPDATE_TIME]}
-        for each in read_entries(result / TRIALS)
+        for each in read_trials(result)
         if UPDATE_TIME in each.further
     }
     tuning = recorded.tuning(result)
@@ -225,7 +225,7 @@ def _repeat_tuning(
     try:
         write_tuning(scratch, trials, workers=workers, release=recorded.origin.code)
     except DdctError:
-        if front_of(trials, tuning.spec):  # else the record is written all the same
+        if any(e.state == FEASIBLE for e in trials):  # else the record is written all the same
             raise
     return Repeated()
 

@@ -12,7 +12,7 @@ from small_benchmark import shown_runs
 from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.release import ReleaseRows, columns_kept, release_rows
 from ddct_bringup.benchmark.report.packaged import packaged_tables
-from ddct_bringup.campaign.columns import schema_of
+from ddct_bringup.campaign.columns import runs_table, schema_of
 from ddct_bringup.campaign.keys import SCENARIO
 from ddct_bringup.campaign.scored import Scorer
 from ddct_bringup.verdict.limits import packaged_limits
@@ -95,7 +95,8 @@ def test_a_sample_of_the_rows_comes_out_again_within_the_bound(release: ReleaseR
         index = place * campaign.cases + case
         (run,) = campaign.planned(index, index + 1)
         (found,) = scorer.scored([run])
-        row, columns = found.row(), release.rows.of(names[place])
+        (row,) = runs_table(schema_of(campaign.spec), [found]).to_pylist()
+        columns = release.rows.of(names[place])
         for name in (each for each in kept if each in columns):
             value = columns[name][case]
             ours = None if isinstance(value, float) and np.isnan(value) else value

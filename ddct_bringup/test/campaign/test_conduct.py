@@ -20,7 +20,7 @@ from verified import edit_manifest
 
 from ddct_bringup.campaign import conduct, run_set, scored
 from ddct_bringup.campaign.campaign import Campaign
-from ddct_bringup.campaign.columns import COMPARED, differences
+from ddct_bringup.campaign.columns import COMPARED, differences, runs_table, schema_of
 from ddct_bringup.campaign.conduct import RESULTS, SHARDS, carry_out
 from ddct_bringup.campaign.plan import RecordedCampaign
 from ddct_bringup.campaign.rows import METRIC_COLUMNS
@@ -375,11 +375,12 @@ def test_what_a_batch_has_is_computed_at_once_and_all_else_step_by_step(
     grid = {'clutch': ['linear', 'stick_slip'], 'wear_gain': [0.7, 1.0], 'duration_s': [1.2]}
     made = Campaign(spec_of({**kinds, 'grid': grid}, tmp_path))
     scorer = Scorer(packaged_limits())
-    rows = [each.row() for each in scorer.scored(made.planned(0, made.runs))]
+    schema = schema_of(made.spec)
+    rows = runs_table(schema, scorer.scored(made.planned(0, made.runs))).to_pylist()
     assert [row['path'] for row in rows] == ['serial'] * 4 + ['vectorised'] * 4
     assert [row['valid'] for row in rows] == [False] * 4 + [True] * 4
     monkeypatch.setattr(scored, 'why_not_batchable', lambda settings, controller: 'not now')
-    again = [each.row() for each in scorer.scored(made.planned(0, made.runs))]
+    again = runs_table(schema, scorer.scored(made.planned(0, made.runs))).to_pylist()
     assert {row['path'] for row in again} == {'serial'}
     assert [differences(row, other) for row, other in zip(rows, again, strict=True)] == [[]] * 8
 

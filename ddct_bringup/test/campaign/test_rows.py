@@ -6,7 +6,8 @@ import pytest
 from refusals import refused
 
 from ddct_bringup import api
-from ddct_bringup.campaign.rows import result_row, scored_headless
+from ddct_bringup.campaign.columns import runs_table, schema_over
+from ddct_bringup.campaign.rows import SERIAL, ScoredRow, scored_headless
 from ddct_bringup.run.run_base import RunBase
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.from_python import chosen_from
@@ -48,13 +49,20 @@ def test_a_value_that_the_scenario_refuses_is_named():
         BASE.at({'vehicle.mass_kg': -1.0})
 
 
+def row_of(run):
+    """Return the row of a run over the wear gain."""
+    row = ScoredRow(0, run.controller, 0, {'wear_gain': 0.9}, run, SERIAL)
+    (found,) = runs_table(schema_over({'wear_gain': [0.9]}), [row]).to_pylist()
+    return found
+
+
 def test_a_run_has_the_metrics_and_the_state_of_the_same_run_alone():
     run = scored_headless(BASE.at({'wear_gain': 0.9}), 'ls8', packaged_limits())
     alone = api.run('ls8', duration=2.0, scenario='thesis_sticking', wear_gain=0.9)
     wall_clock = dict.fromkeys(('update_time_median_us', 'update_time_p99_us'))
     assert run.metrics == {**alone.metrics, **wall_clock}
     assert (run.state, run.why, run.limits) == (alone.state, alone.why, alone.limits)
-    row = result_row(run, {'wear_gain': 0.9})
+    row = row_of(run)
     assert (row['controller'], row['path'], row['wear_gain']) == ('ls8', 'serial', 0.9)
     assert row['friction_work_j'] == alone.figures['friction_work_j']
     assert (row['valid'], row['state'], row['why']) == (True, alone.state, alone.why)
@@ -64,9 +72,9 @@ def test_a_run_has_the_metrics_and_the_state_of_the_same_run_alone():
 def test_a_failed_run_is_invalid_with_its_reason_and_without_scores():
     chosen = chosen_from(Diverging, 'diverging')
     run = scored_headless(BASE.at({'wear_gain': 0.9}), chosen, packaged_limits())
-    row = result_row(run, {'wear_gain': 0.9})
+    row = row_of(run)
     assert (row['valid'], row['state']) == (False, 'invalid')
     assert 'diverging' in str(row['reason'])
     assert row['engagement_time_s'] is row['slip_final_rpm'] is None
     sound = scored_headless(BASE.at({}), 'pi', packaged_limits())
-    assert row.keys() == result_row(sound, {'wear_gain': 1.0}).keys()
+    assert row.keys() == row_of(sound).keys()

@@ -10,8 +10,8 @@ from pyarrow import parquet
 
 from ddct_bringup.campaign import scored
 from ddct_bringup.campaign.campaign import Campaign
+from ddct_bringup.campaign.columns import runs_table, schema_of
 from ddct_bringup.campaign.conduct import carry_out
-from ddct_bringup.campaign.rows import Row
 from ddct_bringup.campaign.scored import scored_runs
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.many_runs import blocks, engine
@@ -30,9 +30,10 @@ def campaign() -> Campaign:
     return Campaign(spec_of(CONTENT, Path()))
 
 
-def rows_in_memory(workers: int) -> list[Row]:
-    with scored_runs(campaign(), packaged_limits(), workers=workers) as found:
-        return [each.row() for each in found]
+def rows_in_memory(workers: int) -> list[dict[str, Any]]:
+    made = campaign()
+    with scored_runs(made, packaged_limits(), workers=workers) as found:
+        return runs_table(schema_of(made.spec), list(found)).to_pylist()
 
 
 @pytest.mark.process
@@ -56,7 +57,7 @@ def test_rows_in_a_folder_are_the_same_with_any_workers(tmp_path: Path) -> None:
     assert {row['path'] for row in first} == {'serial', 'vectorised'}
     for stored, row in zip(first, rows_in_memory(1), strict=True):
         if stored['path'] == 'serial':
-            assert stored == {name: row[name] for name in stored}
+            assert stored == row
 
 
 def test_the_first_row_comes_before_the_last_run_is_computed(
@@ -73,5 +74,5 @@ def test_the_first_row_comes_before_the_last_run_is_computed(
     monkeypatch.setattr(blocks, '_BLOCKS', 6)
     monkeypatch.setattr(scored.RunSet, 'planned', counted)
     with scored_runs(campaign(), packaged_limits(), workers=1) as found:
-        assert next(found).row()['index'] == 0
+        assert next(found).index == 0
     assert max(computed) < 2

@@ -9,7 +9,7 @@ import pytest
 
 from ddct_bringup.campaign import scored
 from ddct_bringup.campaign.campaign import Campaign
-from ddct_bringup.campaign.columns import differences, parquet_bytes
+from ddct_bringup.campaign.columns import differences, parquet_bytes, runs_table, schema_of
 from ddct_bringup.campaign.rows import VECTORISED
 from ddct_bringup.campaign.scored import Scorer
 from ddct_bringup.campaign.shards import CampaignWork, runs_in, shard_size_of, shards_of
@@ -24,7 +24,7 @@ def rows_of(**content: Any) -> list[dict[str, Any]]:
     """Return the rows of all runs of a specification, computed as one shard."""
     campaign = Campaign(spec_of(content, Path()))
     found = Scorer(packaged_limits()).scored(campaign.planned(0, campaign.runs))
-    return [dict(each.row()) for each in found]
+    return runs_table(schema_of(campaign.spec), found).to_pylist()
 
 
 def test_each_run_has_a_controller_of_its_own_gains(monkeypatch) -> None:

@@ -6,10 +6,11 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+import pyarrow as pa
 import pytest
 
 from ddct_bringup.campaign.campaign import Campaign
-from ddct_bringup.campaign.columns import parquet_bytes, rows_table, schema_of
+from ddct_bringup.campaign.columns import parquet_bytes, schema_of
 from ddct_bringup.campaign.conduct import RESULTS
 from ddct_bringup.campaign.plan import CampaignPlan
 from ddct_bringup.campaign.rows import METRIC_COLUMNS
@@ -61,7 +62,7 @@ def make_campaign(
     inputs = InputFiles(folder)
     plan = CampaignPlan.of(campaign, NamedLimits.of(packaged_limits(), inputs), folder)
     begin_manifest(folder, CAMPAIGN, {}, inputs, {ITSELF: plan})
-    (folder / RESULTS).write_bytes(parquet_bytes(rows_table(schema, rows)))
+    (folder / RESULTS).write_bytes(parquet_bytes(pa.Table.from_pylist(rows, schema)))
     return seal(folder)
 
 

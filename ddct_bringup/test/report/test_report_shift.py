@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from made_scores import made_scores
 
-from ddct_bringup.campaign.rows import METRIC_COLUMNS, result_row, scored_headless
+from ddct_bringup.campaign.rows import METRIC_COLUMNS, scored_headless
 from ddct_bringup.metrics.catalogue import METRICS
 from ddct_bringup.report.charts import chart_document
 from ddct_bringup.report.page import report_page
@@ -177,12 +177,12 @@ def test_the_heading_of_a_sweep_has_handover_and_off_going_wear_unless_they_vary
 
 
 def test_a_campaign_has_the_scores_of_the_single_run_to_the_last_bit(runs):
-    row = result_row(scored_headless(settings('model'), 'pi', packaged_limits()), {})
+    found = scored_headless(settings('model'), 'pi', packaged_limits())
     single = runs[1].scores
-    assert {key: row[key] for key in METRIC_COLUMNS} == {
+    assert {key: found.metrics[key] for key in METRIC_COLUMNS} == {
         key: single.metrics[key] for key in METRIC_COLUMNS
     }
-    assert row['state'] == single.state
+    assert found.state == single.state
     assert OF_SHIFT and {metric.key for metric in OF_SHIFT} <= set(METRIC_COLUMNS)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from made_scores import made_scores
 
-from ddct_bringup.campaign.scored import ScoredRow
+from ddct_bringup.campaign.rows import ScoredRow
 from ddct_bringup.metrics.catalogue import TABLE_5_1
 from ddct_bringup.run.run_base import RunBase
 from ddct_bringup.sweep.axis import axis_of

@@ -1,20 +1,20 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""A manifest or an entry of a trial with a value of another type is refused, with its file."""
+"""A manifest with a value of another type, and damaged runs, are refused with their file."""
 
-import json
 from pathlib import Path
 from typing import Any
 
+import pyarrow as pa
+import pyarrow.parquet as parquet
 import pytest
 from verified import edit_manifest
 
 from ddct_bringup.manifest.inputs import InputFiles
 from ddct_bringup.manifest.manifest import TUNING, begin_manifest
 from ddct_bringup.tuning.plan import RecordedTuning
-from ddct_bringup.tuning.record import TRIALS, read_entries
+from ddct_bringup.tuning.tables import RUNS, rows_by_trial
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.json_records import to_json
 
 CONTROLLER = {'name': 'pi', 'chosen': 'pi', 'folder': '.', 'digests': {'ddct': 'a'}}
 CONTENT: dict[str, Any] = {
@@ -22,11 +22,6 @@ CONTENT: dict[str, Any] = {
     'limits': {'origin': {'name': 'x'}, 'file': None},
     'controller': CONTROLLER,
     'spec': {},
-}
-ENTRY: dict[str, Any] = {
-    **{'number': 0, 'state': 'feasible', 'reason': '', 'runs': 1},
-    **{'parameters': {'gain': 0.1}, 'further': {'corner': 1.5, 'other': None}},
-    **{'objectives': {}, 'constraints': {}},
 }
 
 
@@ -49,21 +44,14 @@ def test_a_manifest_with_a_value_of_another_type_is_refused(
         RecordedTuning.read(tmp_path)
 
 
-@pytest.mark.parametrize(
-    'content',
-    [
-        *(7, {'a': 1}, [7], [{}]),
-        *([{**ENTRY, 'number': '0'}], [{**ENTRY, 'number': True}], [{**ENTRY, 'reason': 1}]),
-        *([{**ENTRY, 'state': 'best'}], [{**ENTRY, 'state': []}], [{**ENTRY, 'further': None}]),
-        *([{**ENTRY, 'parameters': ['gain']}], [{**ENTRY, 'parameters': {'gain': 'x'}}]),
-    ],
-)
-def test_an_entry_with_a_value_of_another_type_is_refused(tmp_path: Path, content: object) -> None:
-    file = tmp_path / TRIALS
-    file.write_text(json.dumps([ENTRY]), encoding='utf-8')
-    assert to_json(read_entries(file)) == [ENTRY]
-    file.write_text(json.dumps(content), encoding='utf-8')
+@pytest.mark.parametrize('content', [b'', b'no table', None])
+def test_a_damaged_file_of_runs_is_refused(tmp_path: Path, content: bytes | None) -> None:
+    file = tmp_path / RUNS
+    if content is None:  # a table that is another one
+        parquet.write_table(pa.table({'x': [1.0]}), file)
+    else:
+        file.write_bytes(content)
     with pytest.raises(DdctError) as error:
-        read_entries(file)
+        rows_by_trial(file)
     assert error.value.place == str(file)
     assert str(error.value).endswith('start the tuning anew')

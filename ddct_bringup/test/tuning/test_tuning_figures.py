@@ -2,13 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Figures of a tuning have each trial at its values, and room around them."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
 import pytest
+from small_tuning import tuning
 
-from ddct_bringup.tuning.report.figures import front_figure, sensitivity_figure
+from ddct_bringup.tuning.report.figures import front_figure, progress_figure, slices_figure
 from ddct_bringup.tuning.result import (
     Figures,
     FrontEntry,
@@ -16,33 +19,40 @@ from ddct_bringup.tuning.result import (
     ParameterRange,
     TuningResult,
 )
-from ddct_bringup.tuning.trial import FEASIBLE, TrialEntry
+from ddct_bringup.tuning.study import TuningStudy
+from ddct_bringup.tuning.trial import Trial
+from ddct_controllers.design.drawing.chart_style import chart_style
 
-TIME, WORK = (GoalEntry(name, name, '', 'g', 'minimise', None) for name in ('time', 'work'))
-VALUES = [(1.0, 30.0), (2.0, 20.0), (4.0, 10.0)]
-TRIALS = [
-    TrialEntry(
-        number, {'gain': 0.1 * number}, FEASIBLE, '', 1, {'time': time, 'work': work}, {}, {}
-    )
-    for number, (time, work) in enumerate(VALUES)
-]
+pytest.importorskip('optuna', reason='an extra')
+SPEC = tuning().spec
+TIME, DEVIATION = (
+    GoalEntry(goal.name, goal.title, goal.quantity.unit, 'g', goal.sense, None)
+    for goal in SPEC.objectives
+)
+VALUES = [(1.0, 30.0), (2.0, 20.0), (4.0, 10.0), (8.0, 40.0)]
+"""Objectives of the trials, of which the last is dominated."""
+GAINS = [{'proportional_gain': 0.1 + 0.1 * at, 'integral_gain': 0.2} for at in range(4)]
 FRONT = [
     FrontEntry(
-        each.number, each.parameters, None, Figures(each.objectives, {}, 1.0, 1, True), None
+        number,
+        GAINS[number],
+        None,
+        Figures({TIME.name: time, DEVIATION.name: deviation}, {}, 1.0, 1, True),
+        None,
     )
-    for each in TRIALS[:2]
+    for number, (time, deviation) in enumerate(VALUES[:3])
 ]
 RESULT = TuningResult(
-    schema_version=1,
+    schema_version=2,
     controller='pi',
-    parameters={'gain': ParameterRange(0.0, 1.0, 'linear')},
-    objectives=[TIME, WORK],
+    parameters={name: ParameterRange(0.0, 1.0, 'linear') for name in GAINS[0]},
+    objectives=[TIME, DEVIATION],
     constraints=[],
-    trials=3,
+    trials=4,
     states={},
     reasons={},
-    runs=3,
-    all_runs=3,
+    runs=4,
+    all_runs=4,
     cases=1,
     held_out_seed=1,
     best=1,
@@ -50,29 +60,72 @@ RESULT = TuningResult(
     front=FRONT,
     before=None,
     gaps=[],
-    sensitivity={},
-    convergence={},
+    importances={},
 )
 
 
-def test_each_trial_is_at_its_two_objectives() -> None:
-    axes = front_figure(RESULT, TRIALS, 0, 1).axes[0]
-    np.testing.assert_array_equal(axes.collections[0].get_offsets(), VALUES)
-    axes = front_figure(RESULT, TRIALS, 1, 0).axes[0]
-    np.testing.assert_array_equal(axes.collections[0].get_offsets(), np.fliplr(VALUES))
+@pytest.fixture(autouse=True)
+def in_the_style_of_charts() -> Iterator[None]:
+    from matplotlib import pyplot
+
+    with chart_style():
+        yield
+    pyplot.close('all')
+
+
+@pytest.fixture(scope='module')
+def study() -> Any:
+    """Return the study of the trials."""
+    made = TuningStudy(SPEC, {})
+    rows = [
+        pa.Table.from_pylist([{'state': 'engaged', TIME.name: time, DEVIATION.name: deviation}])
+        for time, deviation in VALUES
+    ]
+    made.add([Trial(number, GAINS[number], each) for number, each in enumerate(rows)])
+    return made.study
+
+
+def scattered(axes: Any) -> set[tuple[float, float]]:
+    """Return the places of all trials in a panel."""
+    return {
+        (float(x), float(y))
+        for each in axes.collections
+        for x, y in np.ma.filled(each.get_offsets(), np.nan)
+    }
+
+
+def test_each_trial_is_at_its_two_objectives(study: Any) -> None:
+    assert scattered(front_figure(RESULT, study, 0, 1).axes[0]) >= set(VALUES)
+    turned = {(deviation, time) for time, deviation in VALUES}
+    assert scattered(front_figure(RESULT, study, 1, 0).axes[0]) >= turned
 
 
 @pytest.mark.parametrize('before', [None, FRONT[0]], ids=['none', 'a trial'])
-def test_the_legend_names_the_values_of_before_only_where_there_are_some(before: Any) -> None:
-    (legend,) = front_figure(replace(RESULT, before=before), TRIALS, 0, 1).legends
+def test_the_legend_names_the_values_of_before_only_where_there_are_some(
+    study: Any, before: Any
+) -> None:
+    (legend,) = front_figure(replace(RESULT, before=before), study, 0, 1).legends
     named = 'before' in [text.get_text() for text in legend.get_texts()]
     assert named == (before is not None)
 
 
-@pytest.mark.parametrize('goal', [TIME, WORK], ids=['time', 'work'])
-def test_the_panel_of_a_parameter_has_all_but_the_highest_tenth_of_the_trials(goal: Any) -> None:
-    (panel,) = sensitivity_figure(RESULT, TRIALS, goal).axes
-    heights = [each.objectives[goal.name] for each in TRIALS]
-    low, high = panel.get_ylim()
+@pytest.mark.parametrize(('goal', 'place'), [(TIME, 0), (DEVIATION, 1)], ids=['time', 'std'])
+def test_the_panel_of_a_parameter_has_all_but_the_highest_tenth_of_the_trials(
+    study: Any, goal: Any, place: int
+) -> None:
+    panels = slices_figure(study, goal, place).axes[:2]
+    assert [panel.get_xlabel() for panel in panels] == ['integral_gain', 'proportional_gain']
+    heights = [each[place] for each in VALUES]
+    gains = [each['proportional_gain'] for each in GAINS]
+    assert scattered(panels[1]) >= set(zip(gains, heights, strict=True))
+    low, high = panels[0].get_ylim()
     assert low < min(heights)
-    assert high > np.quantile(heights, 0.9)
+    assert np.quantile(heights, 0.9) < high < max(heights)
+
+
+def test_progress_is_the_volume_between_the_front_and_the_worst_values(study: Any) -> None:
+    axes = progress_figure(RESULT, study).axes[0]
+    (line,) = axes.get_lines()
+    volumes: Any = line.get_ydata()
+    # Of (8, 40): 7 x 10, then the part of each further trial that the earlier ones lack.
+    np.testing.assert_allclose(volumes, [70.0, 70.0 + 60.0, 130.0 + 40.0, 170.0])

@@ -8,24 +8,24 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import pyarrow as pa
 import pytest
 from refusals import refused
 from samples import sampled
 from small_tuning import leave_out_pictures, tuning
-from verified import edit_json_with_digest
 
 from ddct_bringup.api import run
 from ddct_bringup.benchmark.evaluated import MAIN
-from ddct_bringup.campaign.rows import Row
 from ddct_bringup.many_runs.local_workers import ThisProcess
 from ddct_bringup.programs.tune import main
-from ddct_bringup.tuning import conduct, search
+from ddct_bringup.tuning import conduct, study
 from ddct_bringup.tuning.conduct import carry_out_tuning, computed_batch
 from ddct_bringup.tuning.evaluation import TrialRuns
-from ddct_bringup.tuning.front import front_of
-from ddct_bringup.tuning.record import RUNS, read_batch, read_entries, trials_of
 from ddct_bringup.tuning.report.folder import write_tuning
 from ddct_bringup.tuning.result import TuningResult
+from ddct_bringup.tuning.specification.spec import TuningSpec
+from ddct_bringup.tuning.study import JOURNAL, TuningStudy, read_trials
+from ddct_bringup.tuning.tables import RUNS, TRIALS, rows_by_trial
 from ddct_bringup.tuning.trial import DOMINATED, FEASIBLE, INFEASIBLE, Trial
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.json_records import json_text, read_json
@@ -33,7 +33,7 @@ from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
 
 pytestmark = pytest.mark.slow
 
-SAME = ('front.json', 'trials.json', RUNS, 'best.yaml', 'held_out/results.parquet')
+SAME = ('front.json', TRIALS, RUNS, 'best.yaml', 'held_out/results.parquet')
 
 
 @pytest.fixture(autouse=True)
@@ -53,32 +53,35 @@ def written(tuned: Any, out: Path, **options: Any) -> Path:
 def test_another_seed_searches_elsewhere(finished: Path, tmp_path: Path) -> None:
     other = tuning(seed=4, trials=2)
     trials = carry_out_tuning(other, tmp_path / 'out', workers=1)
-    known = read_batch(finished, 0)
-    assert known is not None
+    known = read_trials(finished)
     assert trials[0].values == known[0].values  # those from before
     assert trials[1].values != known[1].values
 
 
-@pytest.mark.parametrize('place', sampled(['rows', 'entries'], every=2))
+@pytest.mark.parametrize('place', sampled(['rows', 'trial', 'trials'], every=2))
 def test_a_killed_tuning_goes_on_to_the_same_bytes_with_any_number_of_workers(
     finished: Path, tmp_path: Path, place: str
 ) -> None:
     """`finished` has two workers, and this one has one."""
     out, calls = tmp_path / 'out', []
 
-    def killed(*arguments: Any) -> None:
-        calls.append(arguments)
+    def killed(study: TuningStudy, trials: Sequence[Trial]) -> None:
+        calls.append(trials)
         if len(calls) == 2:
-            if place == 'rows':  # the rows are there, their entries are not
-                (arguments[0] / 'shards' / '000001.parquet').write_bytes(b'half of a file')
-            if place == 'entries':
-                real(*arguments)
+            if place == 'rows':  # the rows are there, their trials are not
+                (out / 'shards' / '000001.parquet').write_bytes(b'half of a file')
+            if place == 'trial':
+                real(study, trials[:1])
+                with (out / JOURNAL).open('a') as journal:
+                    journal.write('{"op_code": 4, "wor')
+            if place == 'trials':
+                real(study, trials)
             raise KeyboardInterrupt
-        real(*arguments)
+        real(study, trials)
 
-    real = conduct.write_batch
+    real = TuningStudy.add
     with pytest.MonkeyPatch.context() as patch, pytest.raises(KeyboardInterrupt):
-        patch.setattr(conduct, 'write_batch', killed)
+        patch.setattr(conduct.TuningStudy, 'add', killed)
         carry_out_tuning(tuning(), out, workers=1)
     assert bytes_of(written(tuning(), out, workers=1, resume=True)) == bytes_of(finished)
 
@@ -94,21 +97,22 @@ def test_a_folder_with_a_tuning_needs_resume_and_the_same_tuning(tmp_path: Path)
         carry_out_tuning(tuning(trials=2), out, resume=True)
 
 
-def _other_gain(entries: list[dict[str, Any]]) -> None:
-    entries[1]['parameters']['integral_gain'] = 0.5
-
-
-def test_an_altered_batch_is_computed_again_and_one_with_its_digest_is_refused(
+def test_altered_rows_are_computed_again_and_an_altered_study_is_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / 'out'
     first = carry_out_tuning(tuning(trials=2), out, workers=1)
-    path = out / 'shards' / '000000.json'
-    path.write_text(path.read_text().replace('feasible', 'infeasible'))
+    path = out / 'shards' / '000000.parquet'
+    rows = path.read_bytes()
+    path.write_bytes(rows[:-1])
     again = carry_out_tuning(tuning(trials=2), out, workers=1, resume=True)
     assert [each.state for each in again] == [each.state for each in first]
-    assert '000000.json: altered' in capsys.readouterr().err
-    edit_json_with_digest(out, 'shards/000000.json', _other_gain)
+    assert '000000.parquet: altered' in capsys.readouterr().err
+    assert path.read_bytes() == rows
+    journal = out / JOURNAL
+    line = next(e for e in journal.read_text().splitlines() if '"integral_gain":0.0223' in e)
+    other = line.replace('"integral_gain":0.0223', '"integral_gain":0.5')
+    journal.write_text(journal.read_text().replace(line, other))
     with refused(DdctError, key='--out'):
         carry_out_tuning(tuning(trials=2), out, workers=1, resume=True)
 
@@ -119,26 +123,35 @@ def test_the_result_is_read_as_its_record_and_written_as_it_was(finished: Path) 
 
 
 def test_no_trial_of_the_front_ends_early(finished: Path) -> None:
-    trials = trials_of(read_entries(finished / 'trials.json'), finished / RUNS)
+    trials = trials_of(finished)
     tuned = tuning()
     ended = [each for each in trials[1:] if len(each.rows) < len(tuned.cases)]
     assert ended and FEASIBLE not in {each.state for each in ended}
     alone = TrialRuns.by(tuned, ThisProcess())
     whole = [_whole(tuned, alone, each) for each in trials]
-    costs = {
-        each.number: each.costs(tuned.spec, len(each.rows))
-        for each in front_of(trials, tuned.spec)
-    }
-    assert costs == {
-        each.number: each.costs(tuned.spec, len(each.rows)) for each in front_of(whole, tuned.spec)
-    }
+    assert front_of(tuned.spec, trials) == front_of(tuned.spec, whole)
+
+
+def trials_of(folder: Path) -> list[Trial]:
+    """Return the trials of a finished tuning with their runs."""
+    rows = rows_by_trial(folder / RUNS)
+    return [replace(each, rows=rows.get(each.number, each.rows)) for each in read_trials(folder)]
+
+
+def front_of(spec: TuningSpec, trials: Sequence[Trial]) -> dict[int, tuple[float, ...]]:
+    """Return the costs of the trials on the front by their numbers."""
+    study = TuningStudy(spec, {})
+    study.add(trials)
+    chosen = [trials[number] for number in study.front()]
+    return {each.number: each.costs(spec, len(each.rows)) for each in chosen}
 
 
 def test_a_trial_that_another_betters_whatever_comes_ends_after_the_first_part() -> None:
     tuned = tuning(constraints={'engaged': {'at_least': 0.0}})
     names = [goal.name for goal in tuned.spec.objectives]
     row = {'state': 'engaged', **dict.fromkeys(names, 1e-6)}
-    rival = Trial(90, {}, [row] * len(tuned.cases))
+    rows = pa.Table.from_pylist([row] * len(tuned.cases))
+    rival = Trial(90, {}, rows)
     asked = {
         0: {'proportional_gain': 0.2, 'integral_gain': 0.5},
         1: {'proportional_gain': 0.2, 'integral_gain': 0.5},
@@ -147,7 +160,7 @@ def test_a_trial_that_another_betters_whatever_comes_ends_after_the_first_part()
     present, other = computed_batch(tuned, alone, asked, [rival], lambda trial: trial)
     assert (other.state, len(other.rows)) == (DOMINATED, 1)
     assert len(present.rows) == len(tuned.cases)
-    infeasible = Trial(91, {}, [row] * len(tuned.cases), state=INFEASIBLE)
+    infeasible = Trial(91, {}, rows, state=INFEASIBLE)
     _, free = computed_batch(tuned, alone, asked, [infeasible], lambda trial: trial)
     assert len(free.rows) == len(tuned.cases)
 
@@ -175,7 +188,7 @@ def test_only_a_trial_that_keeps_all_else_is_timed_and_a_long_time_makes_it_infe
 
 def _whole(tuned: Any, alone: TrialRuns, trial: Trial) -> Trial:
     """Return a trial with all of its runs."""
-    rows: Sequence[Row] = alone.rows([(trial.values, case) for case in tuned.cases])
+    rows = alone.rows([(trial.values, case) for case in tuned.cases])
     return Trial(trial.number, trial.values, rows, {}, FEASIBLE).checked(
         tuned.spec, len(tuned.cases)
     )
@@ -183,8 +196,7 @@ def _whole(tuned: Any, alone: TrialRuns, trial: Trial) -> Trial:
 
 def test_the_file_of_the_best_gives_the_runs_of_the_trial(finished: Path) -> None:
     result = json.loads((finished / 'front.json').read_text())
-    trials = trials_of(read_entries(finished / 'trials.json'), finished / RUNS)
-    row = trials[result['best']].rows[0]
+    row = trials_of(finished)[result['best']].rows.to_pylist()[0]
     again = run(str(finished / 'best.yaml'), wear_gain=row['wear_gain'])
     for name in ('peak_jerk_m_s3', 'torsion_speed_std_rpm'):
         assert again.metrics[name] == pytest.approx(row[name], rel=1e-9)
@@ -193,7 +205,7 @@ def test_the_file_of_the_best_gives_the_runs_of_the_trial(finished: Path) -> Non
 def test_the_seed_of_held_out_cases_follows_from_the_tuned_files(
     finished: Path, tmp_path: Path
 ) -> None:
-    other = written(tuning(trials=12, seed=9), tmp_path / 'other', workers=1)
+    other = written(tuning(trials=12, seed=6), tmp_path / 'other', workers=1)
     seeds = {
         json.loads((out / 'front.json').read_text())['held_out_seed'] for out in (finished, other)
     }
@@ -223,7 +235,7 @@ def test_constraints_that_no_trial_keeps_end_with_a_line(tmp_path: Path) -> None
     with refused(DdctError) as caught:
         written(tight, out, workers=1)
     assert 'peak jerk at most 1e-06' in str(caught.value)
-    assert (out / 'trials.json').exists() and not (out / 'best.yaml').exists()
+    assert (out / TRIALS).exists() and not (out / 'best.yaml').exists()
 
 
 def test_the_numbers_of_a_transfer_function_are_tuned_and_its_result_is_tuned_again(
@@ -278,9 +290,9 @@ def test_without_optuna_a_line_says_what_to_install(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def missing(name: str) -> str:
-        raise search.importlib.metadata.PackageNotFoundError(name)
+        raise study.importlib.metadata.PackageNotFoundError(name)
 
-    monkeypatch.setattr(search.importlib.metadata, 'version', missing)
+    monkeypatch.setattr(study.importlib.metadata, 'version', missing)
     assert main(['--controller', 'pi', '--spec', 'pi_launches', '--out', str(tmp_path / 'o')]) == 1
     complaint = capsys.readouterr().err
     assert 'make tune-extra' in complaint and complaint.count('\n') == 1

@@ -7,12 +7,17 @@ import shutil
 from pathlib import Path
 from typing import Any
 
+import pyarrow as pa
+import pyarrow.parquet as parquet
 import pytest
 from python_controllers import IMPORTS, PROPORTIONAL
 from small_tuning import leave_out_pictures, made_tuning
 from verified import copied, edit_json_with_digest, edit_manifest, edit_with_digest
 
+from ddct_bringup.campaign.columns import parquet_bytes
 from ddct_bringup.programs.verify import main as verify
+from ddct_bringup.tuning.study import JOURNAL
+from ddct_bringup.tuning.tables import TRIALS
 from ddct_controllers.from_file.with_options import with_options_text
 
 pytestmark = pytest.mark.slow
@@ -40,18 +45,19 @@ def states(folder: Path, to: Path) -> dict[str, str]:
 
 def test_a_tuning_comes_out_again_where_it_was_moved_to(finished: Path, tmp_path: Path) -> None:
     found = states(copied(finished, tmp_path / 'elsewhere' / 'copy'), tmp_path / 'found.json')
-    names = {'manifest.json', 'shards', 'front.json', 'trials.json', 'best.yaml', 'report.html'}
+    names = {'manifest.json', 'shards', 'front.json', TRIALS, 'best.yaml', 'report.html'}
     assert {*names, 'held_out/results.parquet'} <= found.keys()
+    assert JOURNAL not in found  # it has times on the wall clock
     assert set(found.values()) == {'same_bits'}
 
 
-def _better(entries: list[dict[str, Any]]) -> None:
-    name = next(iter(entries[1]['objectives']))
-    entries[1]['objectives'][name] = 0.01
-
-
-def _other_state(entries: list[dict[str, Any]]) -> None:
-    entries[-1]['state'] = 'feasible' if entries[-1]['state'] != 'feasible' else 'infeasible'
+def edit_table(folder: Path, name: str, column: str, value: float) -> None:
+    """Replace the first value of a column of a table, and its digest too."""
+    table = parquet.read_table(folder / name)
+    place = table.column_names.index(column)
+    values = pa.array([value, *table[column].to_pylist()[1:]], table.schema.types[place])
+    changed = table.set_column(place, table.schema.field(place), values)
+    edit_with_digest(folder, name, parquet_bytes(changed))
 
 
 def _better_front(result: dict[str, Any]) -> None:
@@ -61,8 +67,8 @@ def _better_front(result: dict[str, Any]) -> None:
 
 def test_every_edit_with_its_digest_is_found(finished: Path, tmp_path: Path) -> None:
     folder = copied(finished, tmp_path / 'copy')
-    edit_json_with_digest(folder, 'shards/000001.json', _other_state)
-    edit_json_with_digest(folder, 'trials.json', _better)
+    edit_table(folder, 'shards/000001.parquet', 'engagement_time_s', 0.01)
+    edit_table(folder, TRIALS, 'engagement_time_s', 0.01)
     edit_json_with_digest(folder, 'front.json', _better_front)
     text = (folder / 'best.yaml').read_text()
     changed = text.replace('proportional_gain: 0.', 'proportional_gain: 1.')
@@ -70,7 +76,7 @@ def test_every_edit_with_its_digest_is_found(finished: Path, tmp_path: Path) -> 
     edit_with_digest(folder, 'best.yaml', changed.encode())
     found = states(folder, tmp_path / 'found.json')
     assert {name for name, state in found.items() if state == 'different'} == {
-        *('shards', 'trials.json', 'front.json', 'best.yaml')
+        *('shards', TRIALS, 'front.json', 'best.yaml')
     }
 
 
@@ -81,7 +87,7 @@ def test_an_edited_search_seed_is_found(finished: Path, tmp_path: Path) -> None:
     folder = copied(finished, tmp_path / 'copy')
     edit_manifest(folder, other_seed)
     found = states(folder, tmp_path / 'found.json')
-    assert found['shards'] == found['trials.json'] == 'different'
+    assert found['shards'] == found[TRIALS] == 'different'
 
 
 def test_an_edited_name_of_the_controller_is_found(finished: Path, tmp_path: Path) -> None:
@@ -104,7 +110,7 @@ def test_a_tuning_carries_its_controller(tmp_path: Path) -> None:
         controller=str(outer),
         parameters={'gain': {'low': 0.05, 'high': 0.5}},
         constraints={'engaged': {'at_least': 0.0}},
-        trials=2,
+        trials=4,
     )
     shutil.rmtree(work)
     moved = folder.rename(tmp_path / 'moved')

@@ -112,7 +112,8 @@ def test_campaigns_sweeps_report_and_pages_have_it(patched: Path) -> None:
         import sys
         sys.path.insert(0, {str(ROOT / 'docs')!r})
         from ddct_bringup.api.shell.sweeps import metrics_called
-        from ddct_bringup.campaign.rows import result_row, scored_headless
+        from ddct_bringup.campaign.columns import runs_table, schema_over
+        from ddct_bringup.campaign.rows import SERIAL, ScoredRow, scored_headless
         from ddct_bringup.campaign_report.evaluated_quantities import QUANTITIES
         from ddct_bringup.report.definitions import definitions
         from ddct_bringup.run.run_base import RunBase
@@ -121,7 +122,9 @@ def test_campaigns_sweeps_report_and_pages_have_it(patched: Path) -> None:
         from generator.score_tables import score_tables
 
         settings = RunBase(ScenarioFile.read('thesis'), {{}}, {{}}, ()).at()
-        row = result_row(scored_headless(settings, 'pi', packaged_limits()), {{}})
+        scores = scored_headless(settings, 'pi', packaged_limits())
+        run = ScoredRow(0, 'pi', 0, {{}}, scores, SERIAL)
+        (row,) = runs_table(schema_over({{}}), [run]).to_pylist()
         assert row['{KEY}'] > 1.0
         assert '{KEY}' in [each.key for each in QUANTITIES]
         assert [each.key for each in metrics_called('--metrics', '{KEY}')] == ['{KEY}']

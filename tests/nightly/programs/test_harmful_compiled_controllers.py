@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compiled code that crashes in some runs ends those alone, in a benchmark and in a tuning."""
 
-import json
 from pathlib import Path
 
 import pyarrow.parquet as parquet
@@ -11,7 +10,9 @@ from small_benchmark import judge, use_small_release
 from small_tuning import made_tuning
 from support.c_controllers import ENDS, harmed_on_a_hill, harmful
 
+from ddct_bringup.campaign.arrow_columns import read_parquet
 from ddct_bringup.campaign.conduct import RESULTS
+from ddct_bringup.tuning.tables import TRIALS
 
 pytestmark = [pytest.mark.slow, pytest.mark.compiler]
 
@@ -46,8 +47,8 @@ def test_trials_of_a_tuning_go_on_after_one_that_crashes(
         trials=8,
         campaign={'scenario': 'thesis', 'random': {'samples': 1, 'vary': vary}},
     )
-    trials = json.loads((found / 'trials.json').read_text(encoding='utf-8'))
-    whole = {each['number'] for each in trials if each['parameters']['fault'] < 1.0}
+    trials = read_parquet(found / TRIALS).to_pylist()
+    whole = {each['number'] for each in trials if each['fault'] < 1.0}
     assert 0 < len(whole) < len(trials) == 8
     for each in trials:
         assert (each['state'] != 'infeasible') == (each['number'] in whole)

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The parameters of an FMU and of a library in C are tuned as the gains of the PI in Python."""
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,7 +11,9 @@ from small_tuning import CONTENT, made_tuning
 from support.exported_mpc import compile_c, run_settings
 from support.fmu import controller_file, skip_without_fmus
 
+from ddct_bringup.campaign.arrow_columns import read_parquet
 from ddct_bringup.run.headless import run_headless
+from ddct_bringup.tuning.tables import TRIALS
 from ddct_controllers.from_file.c_library.library import HEADER, TEMPLATE
 from ddct_controllers.registry import controller_spec
 
@@ -57,10 +58,11 @@ def test_a_foreign_controller_is_tuned_as_ours(
     compared = 0
     # The first trial has the values of each file, the others those of the search.
     for our, their in list(zip(trials(ours), trials(theirs), strict=True))[1:]:
-        assert list(our['parameters'].values()) == list(their['parameters'].values())
+        assert [our[name] for name in RANGES] == [their[name] for name in names]
         assert our['state'] == their['state']
         if our['state'] == 'feasible':
-            assert their['objectives'] == pytest.approx(our['objectives'], rel=1e-6)
+            for name in CONTENT['objectives']:
+                assert their[name] == pytest.approx(our[name], rel=1e-6)
             compared += 1
     assert compared
     best = str(theirs / 'best.yaml')
@@ -70,5 +72,5 @@ def test_a_foreign_controller_is_tuned_as_ours(
 
 def trials(folder: Path) -> list[dict[str, Any]]:
     """Return the trials of a folder of a tuning."""
-    found: list[dict[str, Any]] = json.loads((folder / 'trials.json').read_text(encoding='utf-8'))
+    found: list[dict[str, Any]] = read_parquet(folder / TRIALS).to_pylist()
     return found

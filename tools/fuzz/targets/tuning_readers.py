@@ -2,19 +2,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """Readers of tunings: specifications, each for its controller, the manifest and the trials."""
 
-from collections.abc import Iterator
+import tempfile
+from collections.abc import Iterator, Sequence
 from functools import partial
 from importlib.resources import files
+from importlib.util import find_spec
 from pathlib import Path
 
+import pyarrow as pa
+
 from ddct_bringup.benchmark.judged import Judged
-from ddct_bringup.campaign.columns import schema_of
+from ddct_bringup.campaign.columns import parquet_bytes, schema_of
 from ddct_bringup.manifest.inputs import InputFiles
 from ddct_bringup.manifest.origin import CodeOrigin
 from ddct_bringup.tuning.plan import RecordedTuning, TuningPlan
-from ddct_bringup.tuning.record import RUNS, TRIALS, read_entries, rows_bytes, trials_of
 from ddct_bringup.tuning.specification.packaged_specs import packaged_specs
-from ddct_bringup.tuning.specification.spec import read_tuning_spec, tuning_spec_of
+from ddct_bringup.tuning.specification.spec import TuningSpec, read_tuning_spec, tuning_spec_of
+from ddct_bringup.tuning.study import JOURNAL, TuningStudy, read_trials
+from ddct_bringup.tuning.tables import RUNS, all_runs, rows_by_trial
 from ddct_bringup.tuning.trial import Trial
 from ddct_bringup.tuning.tuning import Tuning
 from ddct_bringup.verdict.limits import packaged_limits
@@ -44,17 +49,22 @@ def tuning_readers(folder: Path) -> list[Reader]:
     """Return the readers of a tuning's files; `folder` is that of its specification."""
     spec = tuning_spec_of(_SPEC, folder, controller_spec('pi'))
     tuning = Tuning(Judged.of('pi'), spec, packaged_limits())
+    schema = schema_of(tuning.campaign.spec)
     trials = [
-        Trial(number, {'proportional_gain': 0.1 + number}, [_row(tuning, number)], {'corner': 1.5})
+        Trial(
+            number,
+            {'proportional_gain': 0.1 + 0.1 * number},
+            pa.Table.from_pylist([_row(tuning, number)], schema),
+            {'corner': 1.5},
+        )
         for number in range(2)
     ]
-    entries = json_text([each.entry(spec) for each in trials]).encode()
-    rows = rows_bytes(trials, tuning.campaign.spec)
+    rows = parquet_bytes(all_runs(trials, tuning.campaign.spec))
     return [
         *_specifications(),
         Reader('tuning_plan', 'plan.json', _tuning, (_plan(tuning),)),
-        Reader('tuning_trials', TRIALS, partial(_trials, rows), (entries,)),
-        Reader('tuning_runs', RUNS, partial(_runs, entries), (rows,)),
+        Reader('tuning_trials', JOURNAL, _trials, (_journal(spec, trials),)),
+        Reader('tuning_runs', RUNS, _runs, (rows,)),
     ]
 
 
@@ -86,11 +96,20 @@ def _tuning(file: Path) -> object:
     return recorded.tuning(file.parent).campaign.digest()
 
 
-def _trials(rows: bytes, file: Path) -> object:
-    (file.parent / RUNS).write_bytes(rows)
-    return trials_of(read_entries(file), file.parent / RUNS)
+def _journal(spec: TuningSpec, trials: Sequence[Trial]) -> bytes:
+    """Return the journal of a study; empty without Optuna."""
+    if find_spec('optuna') is None:
+        return b''
+    with tempfile.TemporaryDirectory() as folder:
+        TuningStudy(spec, {}, Path(folder)).add(trials)
+        return (Path(folder) / JOURNAL).read_bytes()
 
 
-def _runs(entries: bytes, file: Path) -> object:
-    (file.parent / TRIALS).write_bytes(entries)
-    return trials_of(read_entries(file.parent / TRIALS), file)
+def _trials(file: Path) -> object:
+    return [
+        (each.values, each.state, each.reason, each.further) for each in read_trials(file.parent)
+    ]
+
+
+def _runs(file: Path) -> object:
+    return {number: rows.to_pylist() for number, rows in rows_by_trial(file).items()}

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from ddct_bringup.benchmark.report.texts import notes_of, warnings_of
     from ddct_bringup.benchmark.result_types import Result
     from ddct_bringup.benchmark.update_times import read_update_times
+    from ddct_bringup.campaign.arrow_columns import table_csv
     from ddct_bringup.campaign.campaign import Campaign
     from ddct_bringup.campaign.spec import read_spec
     from ddct_bringup.campaign_report.distributions_figure import write_distributions
@@ -64,10 +65,10 @@ if TYPE_CHECKING:
     from ddct_bringup.scores.scored_run import ScoredRun
     from ddct_bringup.scores.validity import realtime_summary
     from ddct_bringup.sweep.axis import axis_of
-    from ddct_bringup.sweep.sweep import sweep_csv, sweep_document, sweep_notes, sweep_table
+    from ddct_bringup.sweep.sweep import sweep_document, sweep_notes, sweep_table
     from ddct_bringup.sweep.sweep_figure import write_sweep_figure
     from ddct_bringup.tuning.report.printed import print_tuning
-    from ddct_bringup.tuning.search import require_optuna
+    from ddct_bringup.tuning.study import require_optuna
     from ddct_bringup.verdict.limits import Limits, load_limits
     from ddct_controllers.registry import controller_label, controller_names, working_controllers
     from ddct_controllers.workflows.evidence import frequency_evidence

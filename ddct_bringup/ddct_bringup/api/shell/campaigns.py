@@ -7,24 +7,23 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import pyarrow as pa
-import pyarrow.csv as arrow_csv
-
 from ddct_bringup.api import shell
 from ddct_bringup.api.shell.kept_run import keep_run
 from ddct_bringup.bag.recording import Recording
+from ddct_bringup.campaign.arrow_columns import table_csv
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import (
     PATH,
-    SEED,
     VECTORISED_RTOL,
     compared_in,
     differences,
     read_row,
+    runs_table,
+    schema_of,
 )
 from ddct_bringup.campaign.conduct import RESULTS, carry_out
 from ddct_bringup.campaign.plan import RecordedCampaign
-from ddct_bringup.campaign.rows import SERIAL, result_row
+from ddct_bringup.campaign.rows import SERIAL, ScoredRow
 from ddct_bringup.campaign_report.folder import PAGE, scenario_of, write_campaign_page
 from ddct_bringup.campaign_report.reading import read_table, require_as_written, results_of
 from ddct_bringup.campaign_report.summary_types import Summary
@@ -33,8 +32,7 @@ from ddct_bringup.manifest.manifest import keep_digests
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.verdict.limits import Limits
-from ddct_plant.base.errors import DdctError, printable
-from ddct_plant.files.csv_table import plain_cell
+from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import write_json
 from ddct_plant.files.output_file import STDOUT, write_text
 
@@ -108,7 +106,10 @@ def replay_row(
             raise DdctError(f'it fails as its row says ({row["reason"]}): {error}') from error
 
     kept = keep_run(plan, out, limits, as_its_row, overwrite=overwrite)
-    found = differences(row, {SEED: run.settings.case.seed, **result_row(kept.scores, run.varied)})
+    seed = run.settings.case.seed
+    again = ScoredRow(index, run.controller.name, seed, run.varied, kept.scores, row[PATH])
+    (found_again,) = runs_table(schema_of(campaign.spec), [again]).to_pylist()
+    found = differences(row, found_again)
     how = 'bit for bit' if row[PATH] == SERIAL else f'to {VECTORISED_RTOL:g}'
     words = f'its {len(compared_in(row))} figures and words are those of the row, {how}'
     return Replay(index, row[PATH], found, words, kept)
@@ -122,22 +123,10 @@ def show_campaign(
     if json:
         write_json(json, summary)
     if csv:
-        write_text(csv, _csv(folder))
+        write_text(csv, table_csv(read_table(folder, RecordedCampaign.read(folder))))
     if figure:
         recorded = RecordedCampaign.read(folder)
         results = results_of(recorded, read_table(folder, recorded))
         shell.write_distributions(results, scenario_of(recorded), Path(figure))
     keep_digests(file for file in (json, csv, figure) if file not in (None, STDOUT))
     return summary
-
-
-def _csv(folder: Path) -> str:
-    """Return every row of a campaign as CSV, with control characters in its texts escaped."""
-    table = read_table(folder, RecordedCampaign.read(folder))
-    for place, field in enumerate(table.schema):
-        if pa.types.is_string(field.type):
-            words = [plain_cell(printable(each)) for each in table[field.name].to_pylist()]
-            table = table.set_column(place, field, pa.array(words, field.type))
-    sink = pa.BufferOutputStream()
-    arrow_csv.write_csv(table, sink)
-    return sink.getvalue().to_pybytes().decode()

@@ -1,96 +1,182 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Figures of a tuning: the front, convergence, and what each parameter decides."""
+"""Figures of a tuning: Optuna's plots of the study, with the held-out figures of the front."""
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from ddct_bringup.report.page_parts import unit_text
 from ddct_bringup.tuning.result import Figures, FrontEntry, GoalEntry, TuningResult
-from ddct_bringup.tuning.specification.parameters import LOG
-from ddct_bringup.tuning.trial import FEASIBLE, TrialEntry
+from ddct_bringup.tuning.specification.goals import MINIMISE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from optuna import Study
+    from optuna.trial import FrozenTrial
 
 _SIZE = (5.6, 4.2)
 """Width and height in inches: small, so that letters stay legible on a phone."""
-_TRIED, _FRONT, _HELD, _BEFORE = '#9a9a9a', '#0b62a4', '#c2410c', '#000000'
-"""Colours of other trials, of the front, of held-out figures, and of the values of before."""
+_ACROSS = 2.6
+"""Width in inches of the panel of a parameter."""
+_HELD, _BEST, _BEFORE = '#c2410c', '#000000', '#000000'
+"""Colours of held-out figures, of the ring of the best trial, and of the values of before."""
+_LABELS = {
+    'Infeasible Trial': 'breaks a constraint',
+    'Feasible Trial': 'keeps all',
+    'Best Trial': 'front, development',
+}
+"""Our words for those of Optuna's legend."""
 _SPREAD = 3.0
 """Largest distance of a drawn trial from the front, in ranges of the front."""
 
 
-def front_figure(
-    result: TuningResult, trials: Sequence[TrialEntry], across: int, up: int
-) -> 'Figure':
+def front_figure(result: TuningResult, study: 'Study', across: int, up: int) -> 'Figure':
     """Return the trials over two objectives, those of the front with their held-out figures."""
-    from matplotlib.figure import Figure
+    from optuna.visualization.matplotlib import plot_pareto_front
 
-    goals = result.objectives
-    first, second = goals[across], goals[up]
-    figure = Figure(figsize=_SIZE)
-    axes = figure.subplots()
-    shown = [each for each in trials if each.state == FEASIBLE]
-    places = [(e.objectives[first.name], e.objectives[second.name]) for e in shown]
-    across_up = np.array(places, dtype=float).reshape(-1, 2).T
-    axes.scatter(across_up[0], across_up[1], s=12, color=_TRIED, label='trial that keeps all')
+    goals = result.objectives[across], result.objectives[up]
+
+    def places(trial: 'FrozenTrial') -> Sequence[float]:
+        return trial.values[across], trial.values[up]
+
+    with _plots():
+        axes: Axes = plot_pareto_front(
+            study, targets=places, target_names=[_label(goal) for goal in goals]
+        )
     for entry in result.front:
-        _draw_pair(axes, entry, first, second, _FRONT, best=entry.number == result.best)
+        _draw_held_out(axes, entry, goals, 'o')
+        if entry.number == result.best:
+            _scatter(axes, _place(entry.development, goals), 'o', 110, edgecolors=_BEST)
     if result.before:
-        _draw_pair(axes, result.before, first, second, _BEFORE, best=False)
-    axes.scatter([], [], s=36, color=_FRONT, label='front, development')
-    axes.scatter([], [], s=36, facecolors='none', edgecolors=_HELD, label='the same, held out')
-    axes.scatter([], [], s=110, facecolors='none', edgecolors=_FRONT, label='best')
-    if result.before:
+        _draw_held_out(axes, result.before, goals, 's')
+        _scatter(axes, _place(result.before.development, goals), 's', 36, color=_BEFORE)
         axes.scatter([], [], s=36, marker='s', color=_BEFORE, label='before')
-    axes.set_xlabel(_label(first))
-    axes.set_ylabel(_label(second))
-    _limit(axes, result, first, second)
+    axes.scatter([], [], s=36, facecolors='none', edgecolors=_HELD, label='the same, held out')
+    axes.scatter([], [], s=110, facecolors='none', edgecolors=_BEST, label='best')
+    for each in axes.collections:
+        each.set_label(_LABELS.get(str(each.get_label()), each.get_label()))
+    _limit(axes, result, goals)
+    figure = _figure(axes, _SIZE)
+    if legend := axes.get_legend():
+        legend.remove()
     figure.legend(loc='outside lower center', ncols=3, fontsize=8.5)
     return figure
 
 
-def _draw_pair(
-    axes: 'Axes',
-    entry: FrontEntry,
-    first: GoalEntry,
-    second: GoalEntry,
-    colour: str,
-    *,
-    best: bool,
+def progress_figure(result: TuningResult, study: 'Study') -> 'Figure':
+    """
+    Return what the trials have reached, over their numbers.
+
+    It is the best value of one objective, and of several the hypervolume between the front and the
+    worst values of feasible trials.
+    """
+    from optuna.visualization.matplotlib import (
+        plot_hypervolume_history,
+        plot_optimization_history,
+    )
+
+    with _plots():
+        if len(result.objectives) == 1:
+            (goal,) = result.objectives
+            return _figure(plot_optimization_history(study, target_name=_label(goal)), _SIZE)
+        return _figure(plot_hypervolume_history(study, _worst(result, study)), _SIZE)
+
+
+def _worst(result: TuningResult, study: 'Study') -> list[float]:
+    """Return the worst value of each objective among the feasible trials."""
+    kept = [
+        each.values
+        for each in study.get_trials(deepcopy=False)
+        if each.values and not any(each.constraints.values())
+    ]
+    return [
+        (max if goal.sense == MINIMISE else min)(values)
+        for goal, values in zip(result.objectives, zip(*kept, strict=True), strict=True)
+    ]
+
+
+def slices_figure(study: 'Study', goal: GoalEntry, place: int) -> 'Figure':
+    """Return the value of an objective over each parameter, without its highest tenth."""
+    from optuna.visualization.matplotlib import plot_slice
+
+    with _plots():
+        drawn: Any = plot_slice(study, target=_objective(place), target_name=_label(goal))
+    panels: list[Axes] = np.atleast_1d(drawn).tolist()
+    values = [each.values[place] for each in study.get_trials(deepcopy=False) if each.values]
+    if values:
+        low, high = min(values), float(np.quantile(values, 0.9))
+        margin = 0.08 * ((high - low) or 1.0)
+        panels[0].set_ylim(low - margin, high + margin)
+    return _figure(panels[0], (_ACROSS * len(panels) + 1.0, _SIZE[1]))
+
+
+def _objective(place: int) -> 'Callable[[FrozenTrial], float]':
+    def value(trial: 'FrozenTrial') -> float:
+        return float(trial.values[place])
+
+    return value
+
+
+def _figure(axes: 'Axes', size: tuple[float, float]) -> 'Figure':
+    """Return the figure of axes without the title of its kind, which the page has."""
+    figure = cast('Figure', axes.figure)
+    figure.suptitle('')
+    axes.set_title('')
+    figure.set_size_inches(size)
+    return figure
+
+
+@contextmanager
+def _plots() -> Iterator[None]:
+    """Draw without a display, and leave out that Optuna's plots are experimental."""
+    import matplotlib
+
+    matplotlib.use('agg')
+    with warnings.catch_warnings():
+        warnings.simplefilter('ignore')
+        yield
+
+
+def _draw_held_out(
+    axes: 'Axes', entry: FrontEntry, goals: tuple[GoalEntry, GoalEntry], marker: str
 ) -> None:
-    marker = 's' if colour == _BEFORE else 'o'
-    ours = _place(entry.development, first, second)
-    theirs = _place(entry.held_out, first, second)
-    if ours is None:
-        return
-    x, y = ours
-    if theirs:
-        axes.plot([x, theirs[0]], [y, theirs[1]], color=_HELD, linewidth=0.8)
-        axes.scatter(
-            [theirs[0]], [theirs[1]], s=36, marker=marker, facecolors='none', edgecolors=_HELD
-        )
-    axes.scatter([x], [y], s=36, marker=marker, color=colour, zorder=3)
-    if best:
-        axes.scatter([x], [y], s=110, facecolors='none', edgecolors=colour, zorder=3)
+    """Draw the held-out figures of a trial, with a line from those in development."""
+    ours, theirs = _place(entry.development, goals), _place(entry.held_out, goals)
+    if ours and theirs:
+        axes.plot(*zip(ours, theirs, strict=True), color=_HELD, linewidth=0.8)
+        _scatter(axes, theirs, marker, 36, edgecolors=_HELD)
+
+
+def _scatter(
+    axes: 'Axes', place: tuple[float, float] | None, marker: str, size: float, **colours: Any
+) -> None:
+    if place is not None:
+        given = {'facecolors': 'none', **colours} if 'edgecolors' in colours else colours
+        x, y = place
+        axes.scatter([x], [y], s=size, marker=marker, zorder=3, **given)
 
 
 def _place(
-    figures: Figures | None, first: GoalEntry, second: GoalEntry
+    figures: Figures | None, goals: tuple[GoalEntry, GoalEntry]
 ) -> tuple[float, float] | None:
     values = figures.objectives if figures else {}
-    x, y = values.get(first.name), values.get(second.name)
+    x, y = (values.get(goal.name) for goal in goals)
     return None if x is None or y is None else (x, y)
 
 
-def _limit(axes: 'Axes', result: TuningResult, first: GoalEntry, second: GoalEntry) -> None:
+def _limit(axes: 'Axes', result: TuningResult, goals: tuple[GoalEntry, GoalEntry]) -> None:
     """Leave out what is far from the front, which would press it into a corner."""
     drawn = [*result.front, *([result.before] if result.before else [])]
-    for goal, setting in ((first, axes.set_xlim), (second, axes.set_ylim)):
+    bounds = axes.dataLim
+    for goal, setting, ends in (
+        (goals[0], axes.set_xlim, (bounds.x0, bounds.x1)),
+        (goals[1], axes.set_ylim, (bounds.y0, bounds.y1)),
+    ):
         values = [
             value
             for entry in drawn
@@ -99,63 +185,11 @@ def _limit(axes: 'Axes', result: TuningResult, first: GoalEntry, second: GoalEnt
         ]
         low, high = min(values), max(values)
         span = (high - low) or abs(high) or 1.0
-        bounds = axes.dataLim
-        ends = (bounds.x0, bounds.x1) if goal is first else (bounds.y0, bounds.y1)
         margin = 0.06 * span
         setting(
             max(low - _SPREAD * span, ends[0]) - margin,
             min(high + _SPREAD * span, ends[1]) + margin,
         )
-
-
-def convergence_figure(result: TuningResult, goal: GoalEntry) -> 'Figure':
-    """Return the best value of an objective so far over the number of trials."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=_SIZE)
-    axes = figure.subplots()
-    values = np.array(result.convergence[goal.name], dtype=float)
-    axes.plot(np.arange(1, len(values) + 1), values, drawstyle='steps-post', color=_FRONT)
-    axes.set_xlabel('trials')
-    axes.set_ylabel(f'best {_label(goal)}')
-    return figure
-
-
-def sensitivity_figure(
-    result: TuningResult, trials: Sequence[TrialEntry], goal: GoalEntry
-) -> 'Figure':
-    """Return the value of an objective over each parameter, a panel for each."""
-    from matplotlib.figure import Figure
-    from matplotlib.ticker import LogLocator, NullFormatter
-
-    names = list(result.parameters)
-    across = min(2, len(names))
-    rows = -(-len(names) // across)
-    figure = Figure(figsize=(_SIZE[0], 0.6 + 2.1 * rows))
-    panels = figure.subplots(rows, across, squeeze=False, sharey=True)
-    values = [each.objectives[goal.name] for each in trials]
-    kept = np.array([each.state == FEASIBLE for each in trials], dtype=bool)
-    known = np.array([value is not None for value in values], dtype=bool)
-    heights = np.array([np.nan if value is None else value for value in values])
-    for axes, name in zip(panels.flat, names, strict=False):
-        tried = np.array([each.parameters[name] for each in trials], dtype=float)
-        for chosen, colour in ((known & ~kept, _TRIED), (known & kept, _FRONT)):
-            axes.scatter(tried[chosen], heights[chosen], s=8, color=colour)
-        axes.set_xlabel(name, fontsize=9)
-        if result.parameters[name].scale == LOG:
-            axes.set_xscale('log')
-            axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0), numticks=4))
-            axes.xaxis.set_major_formatter('{x:g}')
-            axes.xaxis.set_minor_formatter(NullFormatter())
-    if known.any():
-        low, high = np.nanmin(heights), np.nanquantile(heights, 0.9)
-        margin = 0.08 * ((high - low) or 1.0)
-        panels[0, 0].set_ylim(low - margin, high + margin)
-    for axes in panels[:, 0]:
-        axes.set_ylabel(_label(goal), fontsize=9)
-    for axes in panels.flat[len(names) :]:
-        axes.set_axis_off()
-    return figure
 
 
 def _label(goal: GoalEntry) -> str:

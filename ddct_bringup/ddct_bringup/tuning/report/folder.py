@@ -8,7 +8,7 @@ from pathlib import Path
 from ddct_bringup.manifest.code import code_digest
 from ddct_bringup.manifest.manifest import finish_manifest
 from ddct_bringup.run.output_folder import locked_folders
-from ddct_bringup.tuning.front import best_of, front_of, why_no_front
+from ddct_bringup.tuning.front import best_of, why_no_front
 from ddct_bringup.tuning.held_out import (
     compute_held_out,
     held_out_campaign,
@@ -16,17 +16,18 @@ from ddct_bringup.tuning.held_out import (
     judged_trials,
 )
 from ddct_bringup.tuning.plan import RecordedTuning
-from ddct_bringup.tuning.record import RUNS, TRIALS, rows_bytes
 from ddct_bringup.tuning.report.commands import PageCommands
 from ddct_bringup.tuning.report.page import tuning_page
 from ddct_bringup.tuning.result import TuningResult, result_of
+from ddct_bringup.tuning.study import TuningStudy
+from ddct_bringup.tuning.tables import write_tables
 from ddct_bringup.tuning.trial import Trial
 from ddct_bringup.tuning.tuned_files import write_tuned_files
 from ddct_bringup.tuning.tuned_names import PAGE, RESULT
 from ddct_bringup.tuning.tuning import Tuning
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import write_json
-from ddct_plant.files.output_file import write_bytes, write_text
+from ddct_plant.files.output_file import write_text
 from ddct_plant.files.yaml_text import dump_yaml
 from ddct_plant.program.command_line import package_version
 
@@ -50,9 +51,9 @@ def write_tuning(
     tuning = recorded.tuning(out)
     spec = tuning.spec
     with locked_folders(out, shared=True):
-        write_json(str(out / TRIALS), [each.entry(spec) for each in trials])
-        write_bytes(str(out / RUNS), rows_bytes(trials, tuning.campaign.spec))
-        front = front_of(trials, spec)
+        write_tables(out, trials, spec, tuning.campaign.spec)
+        study = TuningStudy(spec, tuning.present, out)
+        front = [trials[number] for number in study.front()]
         if not front:
             finish_manifest(out)
             raise DdctError(why_no_front(trials, spec))
@@ -60,13 +61,12 @@ def write_tuning(
         write_tuned_files(tuning, out, judged, best_of(front, spec))
         campaign = held_out_campaign(tuning, out, judged, release or code_digest())
         compute_held_out(tuning, campaign, recorded.plan.limits, out, workers, stopped)
-        result = result_of(
-            tuning, trials, held_out_trials(tuning, out, judged), campaign.spec.root
-        )
+        held_out = held_out_trials(tuning, out, judged)
+        result = result_of(tuning, study, trials, held_out, campaign.spec.root)
         write_json(str(out / RESULT), result)
-        entries = [each.entry(spec) for each in trials]
         commands = PageCommands.of(tuning, out)
-        write_text(str(out / PAGE), tuning_page(result, entries, _facts(tuning), commands))
+        page = tuning_page(result, study.study, _facts(tuning), commands)
+        write_text(str(out / PAGE), page)
         finish_manifest(out)
     return result
 

@@ -3,7 +3,7 @@
 """The page of a tuning."""
 
 from base64 import b64encode
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -15,17 +15,17 @@ from ddct_bringup.report.page_parts import MARKER, number_text, page_part, page_
 from ddct_bringup.tuning.report import texts
 from ddct_bringup.tuning.report.commands import PageCommands
 from ddct_bringup.tuning.report.figures import (
-    convergence_figure,
     front_figure,
-    sensitivity_figure,
+    progress_figure,
+    slices_figure,
 )
 from ddct_bringup.tuning.result import TuningResult
-from ddct_bringup.tuning.trial import TrialEntry
 from ddct_controllers.design.drawing.chart_style import chart_bytes, chart_style
 from ddct_plant.program.command_line import package_version
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+    from optuna import Study
 
 _ROOM, _REPORT = 'ddct_bringup.tuning.report', 'ddct_bringup.report'
 _CAMPAIGN = 'ddct_bringup.campaign_report'
@@ -33,7 +33,7 @@ _CAMPAIGN = 'ddct_bringup.campaign_report'
 
 def tuning_page(
     result: TuningResult,
-    trials: Sequence[TrialEntry],
+    study: 'Study',
     facts: Mapping[str, str],
     commands: PageCommands,
 ) -> str:
@@ -42,18 +42,14 @@ def tuning_page(
         fronts = [
             (
                 f'{goals[0].title} and {goals[1].title}',
-                _picture(front_figure(result, trials, *at)),
+                _picture(front_figure(result, study, *at)),
             )
             for at in combinations(range(len(result.objectives)), 2)
             for goals in [[result.objectives[place] for place in at]]
         ]
-        convergence = {
-            goal.name: _picture(convergence_figure(result, goal)) for goal in result.objectives
-        }
-        sensitivity = {
-            goal.name: _picture(sensitivity_figure(result, trials, goal))
-            for goal in result.objectives
-        }
+        objectives = list(enumerate(result.objectives))
+        progress = _picture(progress_figure(result, study))
+        slices = {e.name: _picture(slices_figure(study, e, place)) for place, e in objectives}
     return page_template(_ROOM, 'tuning.html.j2').render(
         marker=Markup(MARKER),
         style=page_part(_REPORT, 'page.css')
@@ -62,8 +58,8 @@ def tuning_page(
         script=page_part(_REPORT, 'common.js'),
         result=result,
         fronts=fronts,
-        convergence=convergence,
-        sensitivity=sensitivity,
+        progress=progress,
+        slices=slices,
         notes=list(texts.notes_of(result)),
         texts=texts,
         figure_name=figure_name,
@@ -76,5 +72,9 @@ def tuning_page(
 
 
 def _picture(figure: 'Figure') -> str:
-    """Return a figure as SVG, encoded for a data URI."""
-    return b64encode(chart_bytes(figure, 'svg')).decode()
+    """Return a figure as SVG, encoded for a data URI, and close it."""
+    from matplotlib import pyplot
+
+    picture = b64encode(chart_bytes(figure, 'svg')).decode()
+    pyplot.close(figure)
+    return picture

@@ -4,7 +4,7 @@
 
 from collections.abc import Iterator
 
-from ddct_bringup.tuning.report.texts import goal_text, notes_of
+from ddct_bringup.tuning.report.texts import IMPORTANCES, goal_text, notes_of
 from ddct_bringup.tuning.result import FrontEntry, TuningResult
 from ddct_plant.program.printed_table import print_note, print_tables
 from ddct_plant.program.table import UNDEFINED, Table, Weight, with_reasons
@@ -48,15 +48,14 @@ def _tables(result: TuningResult) -> Iterator[Table]:
         complete='--json FILE',
     )
     yield with_reasons(front, lambda header, row: 'no run has a value')
-    effects = [
-        (goal.title, each.parameter, f'{each.explained:.2f}', f'{each.p_value:.3f}')
+    decides = [
+        (goal.title, name, f'{share:.2f}')
         for goal in result.objectives
-        for each in result.sensitivity[goal.name]
+        for name, share in result.importances[goal.name].items()
     ]
-    if effects:
+    if decides:
         weights = [Weight.IDENTIFYING] * 2
-        headers = ('objective', 'parameter', 'explains', 'p')
-        yield Table('What decides', headers, effects, weights=weights)
+        yield Table('What decides', IMPORTANCES, decides, weights=weights)
 
 
 def _label(result: TuningResult, entry: FrontEntry) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from ddct_bringup.benchmark.report.texts import RULES as BENCHMARK_RULES
 from ddct_bringup.report.page_parts import number_text
 from ddct_bringup.tuning.result import GoalEntry, TuningResult
-from ddct_bringup.tuning.sensitivity import FEWEST
+from ddct_bringup.tuning.study import FEWEST
 
 RULES = {
     'development': 'The cases on which the trials ran. The search has chosen among many trials by '
@@ -21,12 +21,15 @@ RULES = {
     'ended early': 'After a quarter and half of the cases a trial ends if it breaks a constraint '
     'or another trial betters it in every objective, whatever its other runs come to. So no trial '
     'of the front is lost.',
-    'explains': 'The share of the variance of the ranks of all trials that the parameter explains '
-    'by itself. The search tries good values more often, so that the share is that of the trials, '
-    'not of the whole range.',
+    'importance': 'How much the parameter decides the objective, among all parameters: how far '
+    'its values in the best quarter of the trials are from those in all trials (PED-ANOVA of '
+    'Optuna). The search tries good values more often, so that it is that of the trials, not of '
+    'the whole range.',
     'gap': BENCHMARK_RULES['gap'],
 }
 """Definitions by term."""
+IMPORTANCES = ('objective', 'parameter', 'importance')
+"""Headings of the table of what decides."""
 
 
 def goal_text(goal: GoalEntry, values: Mapping[str, float | None]) -> str:

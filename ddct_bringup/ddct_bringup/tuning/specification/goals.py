@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from typing import Any, Final, Literal
 
 import numpy as np
+import pyarrow as pa
 
+from ddct_bringup.campaign.arrow_columns import numpy_column
 from ddct_bringup.campaign.rows import STATE
 from ddct_bringup.campaign.specification.parts import mapping_of
 from ddct_bringup.campaign_report.evaluated_quantities import QUANTITIES
@@ -53,16 +55,13 @@ class RunColumns:
     """Number of runs that were not computed."""
 
     @classmethod
-    def of(
-        cls, rows: Sequence[Mapping[str, Any]], goals: Iterable['Goal'], left: int
-    ) -> 'RunColumns':
+    def of(cls, rows: pa.Table, goals: Iterable['Goal'], left: int) -> 'RunColumns':
         """Return the columns of rows of a campaign."""
-        engaged = np.array([row[STATE] == ENGAGED for row in rows], dtype=bool)
         names = {goal.name for goal in goals if goal.of_runs and goal.name != ENGAGED}
-        values = {
-            name: np.abs(np.array([row[name] for row in rows], dtype=float)) for name in names
-        }
-        return cls(engaged, values, left)
+        if not len(rows):
+            return cls(np.empty(0, dtype=bool), dict.fromkeys(names, np.empty(0)), left)
+        values = {name: np.abs(numpy_column(rows[name]).astype(float)) for name in names}
+        return cls(numpy_column(rows[STATE]) == ENGAGED, values, left)
 
 
 @dataclass(frozen=True)
