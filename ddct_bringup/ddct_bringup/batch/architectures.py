@@ -36,6 +36,8 @@ class Architectures:
         detailed = known[0].detailed and not known[0].shift
         self._start = scenarios[0].control_start_step if detailed else 0
         self._last_request = np.zeros(len(known))
+        self.fed = np.zeros(len(known), dtype=bool)
+        """Whether feedback has been on, (R,)."""
 
     def update(
         self, measured: Measured, running: np.ndarray, on_coming: Any = WHOLE
@@ -57,6 +59,7 @@ class Architectures:
             )
             on = on & ~self._closing.closed
         measured = measured._replace(open_loop_torque=open_loop, on=on)
+        self.fed |= on
         feedback = self._factor * self._controllers.update(measured)
         self._last_request = open_loop + feedback
         request: np.ndarray = on_coming.request(self._last_request)

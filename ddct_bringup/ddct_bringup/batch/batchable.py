@@ -5,6 +5,7 @@
 import dataclasses
 
 from ddct_bringup.batch.controllers import StackedController
+from ddct_bringup.batch.least_jerk.controllers import LeastJerkControllers
 from ddct_bringup.batch.linear_controllers import LinearControllers
 from ddct_bringup.batch.pedal import PedalControllers
 from ddct_bringup.batch.predictive import PredictiveControllers
@@ -33,6 +34,7 @@ _UNSUPPORTED = [
 _KINDS: tuple[type[StackedController], ...] = (
     PredictiveControllers,
     PedalControllers,
+    LeastJerkControllers,
     LinearControllers,
 )
 """Kinds of controllers that a batch supports; the first that takes a controller is its own."""

@@ -108,7 +108,8 @@ def _of_length(
         kept = part if counts.all() else part_of_stack(part, counts)
         results = stacked_results(settings, kept, limits)
         for index, result in zip(found.tolist(), results, strict=True):
-            yield index, replace(result, fallbacks=kind.fallbacks)
+            fallbacks = kind.fallbacks if stack.fed[index] else None
+            yield index, replace(result, fallbacks=fallbacks)
 
 
 def _repeatable(runs: Sequence[Run], kind: _Kind, stack: Trajectory) -> np.ndarray:

@@ -26,6 +26,8 @@ class Stack(NamedTuple):
     """Last step of each run, (R,); before N where its engine ended it."""
     unsure: np.ndarray
     """Runs that must be computed step by step, (R,)."""
+    fed: np.ndarray
+    """Runs whose feedback has been on, (R,)."""
 
 
 def loop_kind(settings: RunSettings) -> Hashable:
@@ -73,4 +75,4 @@ def simulate_batch(
         if not running.any():
             break
         plants.advance(reply, running)
-    return Stack(recorder.trajectory(), last, plants.unsure)
+    return Stack(recorder.trajectory(), last, plants.unsure, architectures.fed)

@@ -120,10 +120,13 @@ def fallbacks_in(trajectory: Trajectory) -> int | None:
     """
     Return the number of steps at which the controller reported no solution of its program.
 
-    None for a controller whose status does not count them.
+    None for a controller whose status does not count them. While feedback is off none does.
     """
-    count = dict(trajectory.status[-1]).get('fallbacks', '')
-    return int(count) if _COUNT.fullmatch(count) else None
+    for status in reversed(trajectory.status):
+        count = dict(status).get('fallbacks')
+        if count is not None:
+            return int(count) if _COUNT.fullmatch(count) else None
+    return None
 
 
 def engagement_of(recording: Recording, timing: RunTiming | None) -> Engagement:

@@ -29,7 +29,10 @@ from ddct_plant.scenario.settings import KnownSettings, RunSettings
 SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 PI = PiController(0.1, 0.1)
 MODEL = transmission_model(SETTINGS.scenario.controlled_driveline)
-PROGRAMS = ('mpc1', 'mpc_preview', 'mpc_offset_free', 'mpc_torsion', 'mpc_wear', 'pedal_mpc')
+SUPPORTED = (
+    *('mpc1', 'mpc_preview', 'mpc_offset_free', 'mpc_torsion', 'mpc_wear', 'pedal_mpc'),
+    'least_jerk',
+)
 
 
 class Proportional(Controller):
@@ -93,7 +96,7 @@ class Limited(PiController):
         (Led(), 'the controller does not do what its linear_model says'),
         (Remembering(), 'the controller does more than reset while feedback is held off'),
         (Broken(), 'the controller failed when it was tried (ValueError: no)'),
-        *((make_controller(name, SETTINGS.known), '') for name in PROGRAMS),
+        *((make_controller(name, SETTINGS.known), '') for name in SUPPORTED),
         (
             make_controller('mpc3', SETTINGS.known, {'backend': 'osqp'}),
             'the solver of its programs is osqp',
@@ -104,6 +107,10 @@ class Limited(PiController):
         ),
         (make_controller('mpc4', SETTINGS.known), 'the controller commands the engine'),
         (make_controller('mpc4_wear', SETTINGS.known), 'the controller commands the engine'),
+        (
+            make_controller('least_jerk', KnownSettings(load_scenario('tip_in'))),
+            'the controller commands the engine',
+        ),
         (
             OwnStep(MODEL, make_observer(SETTINGS.known, MODEL), PREVIEW.settings()),
             'the controller does more than reset while feedback is held off',

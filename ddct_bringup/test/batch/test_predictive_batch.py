@@ -4,16 +4,18 @@
 
 import numpy as np
 import pytest
+from many_controllers import (
+    RUNS,
+    STEPS,
+    assert_step_by_step,
+    known,
+    recorded_engagements,
+    single_torques,
+    stacked_torques,
+)
 
-from ddct_bringup.batch.batchable import kind_of, why_not_batchable
-from ddct_bringup.batch.controllers import Measured
-from ddct_bringup.batch.run_batch import run_batch
-from ddct_bringup.batch.simulate import simulate_batch
-from ddct_bringup.campaign.rows import scored_headless
-from ddct_bringup.run.headless import run_headless
+from ddct_bringup.batch.batchable import kind_of
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_controllers.from_python import chosen_from
-from ddct_controllers.interface import Measurement
 from ddct_controllers.mpc.qp.solvers import Daqp
 from ddct_controllers.registry import make_controller
 from ddct_plant.scenario.file import load_scenario
@@ -36,64 +38,11 @@ VARIANTS: tuple[tuple[str, dict], ...] = (
     ('pedal_mpc', {}),
 )
 IDS = [f'{name}-{len(options)}' for name, options in VARIANTS]
-RUNS, STEPS, START = 1000, 40, 10
-
-
-def known(mass=1500.0):
-    return KnownSettings(load_scenario('launch', {'vehicle.mass_kg': mass}))
 
 
 @pytest.fixture(scope='module')
 def recorded():
-    """Return noisy signals of engagements that are followed badly: 1000 runs, 60 steps."""
-    random = np.random.default_rng(53)
-    step, ahead = np.arange(STEPS)[:, np.newaxis], np.arange(23)
-
-    def noise(size):
-        return random.normal(scale=size, size=(STEPS, RUNS))
-
-    start = random.uniform(5.0, 60.0, RUNS)
-    since = np.maximum(step[..., np.newaxis] + ahead - START, 0)
-    references = np.maximum(start[:, np.newaxis] - 1.1 * since, 0.0)
-    rates = np.where((references > 0.0) & (since > 0), -110.0, 0.0)
-    slip = references[..., 0] + noise(0.3) + random.normal(scale=3.0, size=RUNS)
-    shaft = random.uniform(20.0, 190.0, RUNS) + 0.3 * step
-    torque, load = random.uniform(20.0, 300.0, RUNS) + noise(1.0), 60.0 + noise(5.0)
-    on = np.repeat(step >= START, RUNS, axis=1)
-    on[30:34, ::3] = False
-    speeds = shaft + slip, shaft, shaft / 16.06 + noise(0.01), shaft / 50.0
-    signals = (*speeds, torque, references, rates, load, 0.9 * torque - 20.0, on)
-    return [Measured(at, *(each[at] for each in signals)) for at in range(STEPS)]
-
-
-def part(measured, preview_steps, runs=slice(None)):
-    """Return the signals of some runs with these preview steps."""
-    points = slice(0, preview_steps + 1)
-    values = [each[runs] for each in measured[1:]]
-    values[5], values[6] = values[5][:, points], values[6][:, points]
-    return Measured(measured.step, *values)
-
-
-def stacked_torques(controllers, recorded, runs=slice(None)):
-    stack = kind_of(controllers[0]).of(controllers, [known()] * len(controllers))
-    steps = controllers[0].preview_steps
-    return np.array([stack.update(part(each, steps, runs)) for each in recorded])
-
-
-def single_torques(controller, recorded, run):
-    """Return the torques step by step and the last status."""
-    controller.reset()
-    torques, status = [], ()
-    for each in recorded:
-        *values, on = (value[run].tolist() for value in part(each, controller.preview_steps)[1:])
-        measurement = Measurement(each.step, *values)
-        if on:
-            command = controller.update(measurement)
-            status = command.status
-        else:
-            controller.hold(measurement)
-        torques.append(command.clutch_torque if on else 0.0)
-    return np.array(torques), dict(status)
+    return recorded_engagements()
 
 
 @pytest.mark.parametrize(('name', 'options'), VARIANTS, ids=IDS)
@@ -163,32 +112,19 @@ def runs_of(name, options, scenario, changes, architecture='detailed'):
     return runs
 
 
-WHOLE = [
+WHOLE: list[tuple[str, dict, str, dict, str]] = [
     *((name, options, 'thesis', {}, 'detailed') for name, options in VARIANTS),
     ('mpc3', {}, 'thesis', {}, 'base'),
     ('mpc_preview', {}, 'thesis', {'reference.shape': 'tanh'}, 'feedforward'),
     ('mpc_wear', {}, 'thesis', {'equilibrium': 'full', 'actuator.delay_s': 0.023}, 'detailed'),
+    ('mpc3', {}, 'launch', {}, 'detailed'),
+    ('mpc_preview', LIMITED, 'launch', {}, 'detailed'),
+    ('mpc_offset_free', {}, 'launch_hill', {}, 'detailed'),
+    ('mpc_wear', {}, 'launch_hot', {'sensors.engine_speed.noise_rad_s': 0.1}, 'detailed'),
+    ('pedal_mpc', {}, 'launch_gentle', {'pedal_position': 0.7}, 'detailed'),
 ]
 
 
 @pytest.mark.parametrize(('name', 'options', 'scenario', 'changes', 'architecture'), WHOLE)
 def test_whole_runs_are_those_step_by_step(name, options, scenario, changes, architecture):
-    """Every value is within 1e-9 of the peak of its signal, and every state the same."""
-    runs = runs_of(name, options, scenario, changes, architecture)
-    assert {why_not_batchable(*run) for run in runs} == {''}
-    settings, controllers = zip(*runs, strict=True)
-    stack = kind_of(controllers[0]).of(controllers, [each.known for each in settings])
-    trajectory = simulate_batch(settings, stack, controllers[0].preview_steps).trajectory
-    for index, ours in enumerate(run_batch(runs, LIMITS)):
-        controller = controllers[index]
-        expected = scored_headless(settings[index], chosen_from(controller, 'same'), LIMITS)
-        assert ours is not None
-        assert (ours.state, ours.why, ours.fallbacks) == (expected.state, expected.why, 0)
-        assert expected.fallbacks == 0
-        controller.reset()
-        single = run_headless(settings[index], controller)
-        for signal, values in trajectory.signals.items():
-            theirs = getattr(single, signal)
-            theirs = theirs[:, :1] if signal == 'slip_reference' else theirs
-            largest = 1e-9 * np.abs(theirs).max()
-            assert values[index] == pytest.approx(theirs, rel=0.0, abs=largest), signal
+    assert_step_by_step(runs_of(name, options, scenario, changes, architecture), LIMITS)

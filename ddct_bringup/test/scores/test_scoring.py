@@ -71,3 +71,11 @@ def test_a_whole_run_of_a_good_controller_is_engaged():
 def test_the_facts_of_the_run_are_those_of_the_bag():
     run = scored(200.0)
     assert run.facts == FACTS
+
+
+def test_steps_without_a_solution_count_where_feedback_is_off_at_the_end():
+    off = (('feedback', 'held off'),)
+    counts = [(('feedback', 'on'), ('fallbacks', count)) for count in '0122']
+    status = (off, *counts, *[off] * 296)
+    assert scored(200.0, status=status).fallbacks == 2
+    assert scored(200.0, status=(off,) * 301).fallbacks is None

@@ -25,7 +25,7 @@ class ActuatorTorque:
         model = actuator.dynamics()
         size = len(model.a)
         periods, late = divmod(actuator.delay_substeps, SUBSTEPS)
-        self._inputs = 2 if late else 1
+        self.inputs = 2 if late else 1
         """Number of requests in effect within a period."""
         self.ahead = max(round(actuator.lag_s / PERIOD_S), 1)
         """Number of coming periods whose torque the requests so far decide: the lag."""
@@ -35,12 +35,12 @@ class ActuatorTorque:
         sampled, acting = discretise_zoh(extended, PERIOD_S), acting_inputs(extended, late)
         step, held = sampled.a[:size, :size], acting[:size]
         mean, mean_held = sampled.a[size, :size] / PERIOD_S, acting[size] / PERIOD_S
-        waiting = max(periods + self._inputs - 1, 1)
+        waiting = max(periods + self.inputs - 1, 1)
         total, total_held = np.zeros(size), np.zeros(waiting)
         power, response = np.eye(size), np.zeros((size, waiting))
         for period in range(self.ahead):
             # The requests in effect: of those that wait, the last one is held.
-            places = np.minimum(period + np.arange(self._inputs), waiting - 1)
+            places = np.minimum(period + np.arange(self.inputs), waiting - 1)
             chosen = np.eye(waiting)[places]
             total = total + mean @ power
             total_held = total_held + mean @ response + mean_held @ chosen
@@ -55,12 +55,13 @@ class ActuatorTorque:
         """The same, of all requests that wait, to the sum of the means of `ahead` periods."""
         self.at_rest: list[float] = at_rest(model, 1.0).tolist()
         """States at rest on a request of 1 N m, (4,)."""
-        self._delayed = periods + self._inputs - 1
+        self.delayed = periods + self.inputs - 1
+        """Number of requests that wait, 0 without a delay."""
         self.reset(0.0)
 
     def reset(self, request: float) -> None:
         """Put the actuator at rest on a request in N m."""
-        self._waiting = [request] * max(self._delayed, 1)
+        self._waiting = [request] * max(self.delayed, 1)
         """Requests in N m that have not acted in full, the latest last; at least that one."""
         self._states = [state * request for state in self.at_rest]
 
@@ -88,8 +89,8 @@ class ActuatorTorque:
 
     def _acting(self, request: float) -> Sequence[float]:
         """Return the requests in effect within the coming period, the earlier one first."""
-        waiting = [*self._waiting, request] if self._delayed else [request]
-        return waiting[: self._inputs]
+        waiting = [*self._waiting, request] if self.delayed else [request]
+        return waiting[: self.inputs]
 
 
 def _weighted(weights: list[float], states: list[float], requests: Sequence[float]) -> float:
