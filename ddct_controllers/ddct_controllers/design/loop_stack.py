@@ -50,6 +50,10 @@ class LoopStack:
         b, c, d = self.b[place, :, np.newaxis], self.c[place : place + 1], self.d[place]
         return StateSpace(self.a[place], b, c, d.reshape(1, 1), PERIOD_S)
 
+    def some(self, places: np.ndarray) -> 'LoopStack':
+        """Return the stack of the systems at `places`, (k,), which may repeat."""
+        return LoopStack(self.a[places], self.b[places], self.c[places], self.d[places])
+
     def behind(self, first: StateSpace) -> 'LoopStack':
         """Return each system behind another, `first`, whose states come first: `series`."""
         count, states, order = len(self), len(self.b[0]), len(first.a)
@@ -86,6 +90,13 @@ class LoopStack:
         reduced = self._reduced()
         found = [_responses(reduced, z, slice(i, i + each)) for i in range(0, len(self), each)]
         return np.concatenate(found)
+
+    def pointwise(self, omega: np.ndarray) -> np.ndarray:
+        """Return the complex response (R,) of each sampled system at its own frequency, (R,)."""
+        z = np.exp(1j * omega * PERIOD_S)
+        resolvents = z[:, np.newaxis, np.newaxis] * np.eye(self.a.shape[1]) - self.a
+        states = np.linalg.solve(resolvents, self.b[:, :, np.newaxis])[..., 0]
+        return (self.c * states).sum(axis=1) + self.d
 
     def _held(self, period_s: float) -> 'LoopStack':
         a, b = hold_inputs(self.a, self.b[..., np.newaxis], period_s)

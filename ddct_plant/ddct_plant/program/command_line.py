@@ -170,19 +170,27 @@ def run_program(
         finally:  # argparse ends the program itself after --help
             _flush()
 
-    with interruptible(ends_process=argv is None) as called, _rare_garbage_collection():
+    ends_process = argv is None
+    with interruptible(ends_process=ends_process) as called, _rare_collection(ends_process):
         return _run_program(name, lambda: called(work))
 
 
 @contextlib.contextmanager
-def _rare_garbage_collection() -> Iterator[None]:
-    """Search for garbage less often, which takes a tenth of the time of a program otherwise."""
+def _rare_collection(ends_process: bool) -> Iterator[None]:
+    """
+    Search for garbage less often, which takes a tenth of the time of a program otherwise.
+
+    A process that ends after it leaves its objects to the operating system: Python would search
+    all of them several times.
+    """
     before = gc.get_threshold()
     gc.set_threshold(_NEW_OBJECTS, *before[1:])
     try:
         yield
     finally:
         gc.set_threshold(*before)
+        if ends_process:
+            gc.freeze()
 
 
 def _run_program(name: str, work: Callable[[], int]) -> int:

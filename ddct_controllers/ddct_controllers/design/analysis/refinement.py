@@ -26,7 +26,7 @@ def zeros(
     By the method of Ridders (IEEE Trans. Circuits Syst. 26(11), 1979). A value of 0 counts as
     negative.
     """
-    point = low
+    point, every = low, np.arange(low.size)
     for _ in range(_MOST_STEPS if low.size else 0):
         middle = 0.5 * (low + high)
         at_middle = function(middle)
@@ -39,22 +39,21 @@ def zeros(
         places = np.stack([low, middle, point, high])
         values = np.stack([at_low, at_middle, at_point, at_high])
         order = np.argsort(places, axis=0, kind='stable')
-        places, values = (np.take_along_axis(each, order, axis=0) for each in (places, values))
-        first = np.argmax((values[1:] > 0.0) != (values[:1] > 0.0), axis=0)[np.newaxis]
-        low, high = (np.take_along_axis(places, first + end, axis=0)[0] for end in (0, 1))
-        at_low, at_high = (np.take_along_axis(values, first + end, axis=0)[0] for end in (0, 1))
+        places, values = places[order, every], values[order, every]
+        first = np.argmax((values[1:] > 0.0) != (values[0] > 0.0), axis=0)
+        low, high = places[first, every], places[first + 1, every]
+        at_low, at_high = values[first, every], values[first + 1, every]
     return point
 
 
 def maxima(function: Function, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the place and the value, both (k,), of the one maximum in each of k intervals."""
-    places, values = low, function(low)
+    places, values, every = low, function(low), np.arange(low.size)
     while np.any(high - low > _NARROW * np.abs(low)):
         points = np.linspace(low, high, _PARTS + 1)
         found = function(points.ravel()).reshape(points.shape)
-        best = np.argmax(found, axis=0)[np.newaxis]
-        places, values, low, high = (
-            np.take_along_axis(each, np.clip(best + step, 0, _PARTS), axis=0)[0]
-            for each, step in ((points, 0), (found, 0), (points, -1), (points, 1))
-        )
+        best = np.argmax(found, axis=0)
+        places, values = points[best, every], found[best, every]
+        low = points[np.maximum(best - 1, 0), every]
+        high = points[np.minimum(best + 1, _PARTS), every]
     return places, values

@@ -19,6 +19,7 @@ from ddct_controllers.design.analysis.loops import (
     WEAR_RANGE,
     require_sampled,
 )
+from ddct_controllers.design.analysis.refinement import zeros
 from ddct_controllers.design.loop_stack import LoopStack
 from ddct_controllers.design.state_space import frequency_response, to_s_plane
 from ddct_plant.base.timebase import PERIOD_S
@@ -133,9 +134,18 @@ class CornerLoops:
     def unstable(self) -> np.ndarray:
         """Whether each corner is unstable at some wear gain of the range, (corners,)."""
         unstable = (self._radius >= 1.0).any(axis=1)
-        for index in np.flatnonzero(~unstable & _may_cross(self._responses)).tolist():
-            gains = LoopCurve(self._loops.sampled(index)).critical_gains()
-            unstable[index] = any(WEAR_GAINS[0] <= gain <= WEAR_GAINS[-1] for gain in gains)
+        crossed = _crossings(self._responses) & ~unstable[:, np.newaxis]
+        corners, first = np.nonzero(crossed)
+        loops = self._loops.some(corners)
+
+        def phase(omega: np.ndarray) -> np.ndarray:
+            return _phase(loops.pointwise(omega))
+
+        ends = self._corners.omega[first], self._corners.omega[first + 1]
+        phases = _phase(self._responses)
+        omega = zeros(phase, *ends, phases[corners, first], phases[corners, first + 1])
+        gains = -1.0 / loops.pointwise(omega).real
+        unstable[corners[(gains >= WEAR_GAINS[0]) & (gains <= WEAR_GAINS[-1])]] = True
         return unstable
 
     @property
@@ -198,11 +208,16 @@ def _worst_wear(values: np.ndarray) -> np.ndarray:
     return np.clip(nearest, WEAR_GAINS[0], WEAR_GAINS[-1])
 
 
-def _may_cross(responses: np.ndarray) -> np.ndarray:
-    """Return per corner whether k L passes near -1 between two points for a k in the range."""
+def _phase(responses: np.ndarray) -> np.ndarray:
+    """Return the sine of the phase of L, which changes its sign where L is real, elementwise."""
+    return responses.imag / np.abs(responses)
+
+
+def _crossings(responses: np.ndarray) -> np.ndarray:
+    """Return whether k L passes near -1 from each point to the next, for a k in the range."""
     imaginary, real = responses.imag, responses.real
     changes = (imaginary[:, 1:] > 0.0) != (imaginary[:, :-1] > 0.0)
     share = imaginary[:, :-1] / (imaginary[:, :-1] - imaginary[:, 1:])
     crossed = real[:, :-1] + share * (real[:, 1:] - real[:, :-1])
     near = (crossed < -0.9 / WEAR_GAINS[-1]) & (crossed > -1.1 / WEAR_GAINS[0])
-    return (changes & near).any(axis=1)
+    return changes & near
