@@ -125,6 +125,8 @@ class _Maps:
         self._slips = by_run([integrators[i].system.size_of_h for i in first], places)
         self._prepared: set[Signs] = set()
         """Modes that are prepared for all runs."""
+        self._matrices: dict[Signs, np.ndarray] = {}
+        """Matrices of all runs, where these have one integrator."""
         self._heights: dict[Signs, np.ndarray] = {}
         """Rows of the matrix of each run in a mode, (R,); 0 where it is not made."""
         self._stacks: dict[tuple[Signs, int], np.ndarray] = {}
@@ -137,7 +139,9 @@ class _Maps:
         """Yield runs with matrices of one height: the runs, the map of one, and the matrices."""
         if self._shared:
             at_once = self._integrators[0].maps[signs]
-            yield runs, at_once, at_once.matrix
+            if signs not in self._matrices:
+                self._matrices[signs] = at_once.matrix()
+            yield runs, at_once, self._matrices[signs]
             return
         heights = self._made(signs, runs)[runs]
         for height in np.unique(heights).tolist():
@@ -162,7 +166,7 @@ class _Maps:
         if not heights[runs].all():
             HybridIntegrator.prepare(self._integrators, signs)
             for run in np.arange(count)[runs][heights[runs] == 0].tolist():
-                matrix = self._integrators[run].maps[signs].matrix
+                matrix = self._integrators[run].maps[signs].matrix()
                 key = signs, len(matrix)
                 if key not in self._stacks:
                     self._stacks[key] = np.empty((count, *matrix.shape))

@@ -2,16 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """A batch of runs whose plates stick gives those of the run step by step."""
 
-from collections import Counter, defaultdict
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from batch_runs import bits_of, engine, friction, road, sensors, short_run, simulated, some
 
-from ddct_bringup.batch.batchable import kind_of, why_not_batchable
-from ddct_bringup.batch.results import part_of_stack
+from ddct_bringup.batch.batchable import why_not_batchable
 from ddct_bringup.batch.run_batch import run_batch
-from ddct_bringup.batch.simulate import loop_kind, simulate_batch
 from ddct_bringup.campaign.rows import scored_headless
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.verdict.limits import packaged_limits
@@ -25,53 +24,6 @@ LIMITS = packaged_limits()
 DRIVES = ('launch', 'launch_gentle', 'launch_hill', 'launch_hot', 'tip_in')
 CARS = ('c635', 'c635_no_limits', 'city7')
 ARCHITECTURES = ('detailed', 'detailed', 'feedforward', 'base')
-
-
-def some(random, low, high):
-    return float(random.uniform(low, high))
-
-
-def friction(random):
-    return {
-        'friction.static_over_kinetic': some(random, 1.0, 1.3),
-        'friction.kiss_torque_n_m': some(random, 0.0, 10.0),
-        'friction.kiss_drift_n_m_k': some(random, 0.0, 0.2),
-        'friction.slip_rad_s': [0.0, 50.0, 200.0],
-        'friction.slip_share': [1.0, some(random, 0.8, 1.0), 0.8],
-        'heat.facing_c': some(random, 20.0, 330.0),
-    }
-
-
-def road(random):
-    times = {'time_s': [0.0, 0.5, 1.0, 1.5]}
-    torques = random.uniform(0.0, 400.0, 3).tolist()
-    slopes = random.uniform(-0.1, 0.1, 4).tolist()
-    return {
-        'brake': {**times, 'torque_n_m': [*torques, 0.0]},
-        'load.slope_rad': 0.0,
-        'slope': {**times, 'slope_rad': slopes},
-    }
-
-
-def sensors(random):
-    return {
-        'sensors.engine_speed.noise_rad_s': some(random, 0.0, 0.3),
-        'sensors.shaft_speed.teeth': int(random.integers(40, 80)),
-        'sensors.shaft_speed.count_s': 0.02,
-        'sensors.wheel_speed.quantum_rad_s': 0.05,
-        'sensors.engine_torque.delay_s': 0.01 * int(random.integers(0, 4)),
-        'sensors.engine_torque.bias_n_m': some(random, -3.0, 3.0),
-        'sensors.vehicle_speed.dropout': 0.2,
-    }
-
-
-def engine(random):
-    return {
-        'engine_limits.idle_rad_s': some(random, 100.0, 104.0),
-        'engine_limits.stall_rad_s': some(random, 94.0, 99.0),
-        'closing.dwell_s': 0.05,
-        'closing.margin': some(random, 1.0, 2.0),
-    }
 
 
 PARTS = {'plain': lambda random: {}, **{f.__name__: f for f in (friction, road, sensors, engine)}}
@@ -105,36 +57,6 @@ def drawn_runs(seed):
                 except DdctError:
                     continue  # a drive that does not fit the car
     return runs
-
-
-def simulated(runs):
-    """Yield the place of each run with its signals in a batch up to its end, or None if unsure."""
-    groups = defaultdict(list)
-    for place, (settings, controller) in enumerate(runs):
-        kind = kind_of(controller)
-        groups[loop_kind(settings), kind, kind.key(controller)].append(place)
-    for (_, kind, _), places in groups.items():
-        settings, controllers = zip(*[runs[place] for place in places], strict=True)
-        stack = kind.of(controllers, [run.known for run in settings])
-        found = simulate_batch(settings, stack)
-        for index, place in enumerate(places):
-            end = int(found.last[index]) + 1
-            signals = part_of_stack(found.trajectory, index).signals
-            cut = {name: values[:end] for name, values in signals.items()}
-            yield place, None if found.unsure[index] else cut
-
-
-def bits_of(runs):
-    """Return the bits of all signals of each run."""
-
-    def bits(signals):
-        return signals and {
-            name: values.tolist() if values.dtype == object else values.tobytes()
-            for name, values in signals.items()
-        }
-
-    found = {place: bits(signals) for place, signals in simulated(runs)}
-    return [found[place] for place in range(len(runs))]
 
 
 @pytest.fixture(scope='module')
@@ -210,19 +132,3 @@ def test_a_run_does_not_depend_on_the_rest_of_a_batch(size):
     together, mixed = bits_of(chosen), bits_of([chosen[place] for place in order])
     assert together[:: size // 3 or 1] == alone
     assert mixed == [together[place] for place in order]
-
-
-def short_run(seed):
-    """Return a run of a batch whose cars, delays, friction, brakes and engines differ."""
-    random = np.random.default_rng(seed)
-    changes = {
-        **{'duration_s': 1.2, 'control_start_s': 0.2, 'score_window_s': [0.2, 1.1]},
-        'vehicle.mass_kg': 1500.0 if seed % 2 else some(random, 1000.0, 2000.0),
-        'actuator.delay_s': int(random.integers(0, 35)) / 1000,
-        **{**friction(random), **road(random), **sensors(random), **engine(random)},
-    }
-    settings = RunSettings(
-        KnownSettings(load_scenario('launch', changes)),
-        CaseSettings(wear_gain=some(random, 0.5, 1.2), seed=seed),
-    )
-    return settings, make_controller('ls8', settings.known)

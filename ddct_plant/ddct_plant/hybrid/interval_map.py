@@ -92,14 +92,13 @@ class IntervalMap:
         """Number of values before the checks."""
         # The end of a piece is the start of the next one.
         within = checks[..., :-1, :, :].reshape(*stack, -1, width)
-        self.matrix = np.concatenate([*results, within, checks[..., -1, -1, :, :]], axis=-2)
-        """Map from v to the values that `whole` and `of_many` read, (rows, v)."""
+        self._rows = np.concatenate([*results, within, checks[..., -1, -1, :, :]], axis=-2)
         self._of_pieces = by_piece
 
     def of_system(self, place: int) -> 'IntervalMap':
         """Return the map of one system of a stack."""
         interval_map = copy(self)
-        interval_map.matrix, interval_map._of_pieces = self.matrix[place], self._of_pieces[place]
+        interval_map._rows, interval_map._of_pieces = self._rows[place], self._of_pieces[place]
         return interval_map
 
     @cached_property
@@ -108,7 +107,7 @@ class IntervalMap:
 
     @cached_property
     def _whole(self) -> Callable[[np.ndarray], np.ndarray]:
-        return _product(self.matrix)
+        return _product(self._rows)
 
     def _work_rows(
         self, slips: np.ndarray, slipping: list[int], layout: IntervalLayout
@@ -148,19 +147,23 @@ class IntervalMap:
             work[element] = results[integral] * capacities[place]
         return Interval(results[: self._states], self._signs, [], work, results[self._friction])
 
+    def matrix(self) -> np.ndarray:
+        """Return the map from v to the values that `of_many` reads, (rows, v)."""
+        results, checks = np.split(self._rows, [self._results])
+        by_guard = checks.reshape(-1, len(self._guarded), checks.shape[1]).swapaxes(0, 1)
+        return np.vstack([results, by_guard.reshape(checks.shape)])
+
     def of_many(self, values: np.ndarray, capacities: np.ndarray) -> 'ManyEnds':
         """
         Return the results of the intervals of R motions, as if none had an event.
 
-        `values` are the products of `matrix` and the v of each motion, (R, rows), `capacities`
+        `values` are the products of `matrix()` and the v of each motion, (R, rows), `capacities`
         those in the v, (R, c).
         """
-        checks, guards = values[:, self._results :], len(self._guarded)
         least = np.full((len(values), len(self._signs)), np.inf)
-        for guard, element in enumerate(self._guarded):
-            np.minimum(
-                least[:, element], checks[:, guard::guards].min(axis=1), out=least[:, element]
-            )
+        checks = np.split(values[:, self._results :], len(self._guarded), axis=1)
+        for element, of_guard in zip(self._guarded, checks, strict=True):
+            np.minimum(least[:, element], of_guard.min(axis=1), out=least[:, element])
         work = np.zeros_like(least)
         for element, integrals, where in self._work:
             work[:, element] = (values[:, integrals] * capacities[:, where]).sum(axis=1)
