@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ddct_bringup.batch.closing import ClosingStages
-from ddct_bringup.batch.controllers import Measured, StackedController
+from ddct_bringup.batch.controllers import Feedback, Measured
 from ddct_bringup.batch.loads import Loads
 from ddct_bringup.batch.open_loops import known_load, make_open_loops, static_torques
 from ddct_plant.scenario.settings import KnownSettings
@@ -21,7 +21,7 @@ class Architectures:
     def __init__(
         self,
         known: Sequence[KnownSettings],
-        controllers: StackedController,
+        controllers: Feedback,
         steps: int,
         feedback_factor: float = 1.0,
     ) -> None:

@@ -4,7 +4,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Hashable, Sequence
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Protocol, Self
 
 import numpy as np
 
@@ -54,6 +54,15 @@ class Measured(NamedTuple):
             none.astype(bool),
         )
 
+    def of_rows(self, rows: 'slice | np.ndarray', preview_steps: int) -> Self:
+        """Return the signals of some of the runs, whose controllers look ahead as many steps."""
+        ahead = slice(preview_steps + 1)
+        return self._replace(
+            **{name: getattr(self, name)[rows] for name in _OF_ONE_TIME},
+            slip_reference=np.ascontiguousarray(self.slip_reference[rows, ahead]),
+            slip_reference_rate=np.ascontiguousarray(self.slip_reference_rate[rows, ahead]),
+        )
+
     @property
     def slip_speed(self) -> np.ndarray:
         """Slip speeds w_d = w_m - w_p in rad/s, (R,)."""
@@ -64,6 +73,22 @@ class Measured(NamedTuple):
         """Slip references less slip speeds in rpm, (R,)."""
         error: np.ndarray = rpm_from_rad_s(self.slip_reference[:, 0] - self.slip_speed)
         return error
+
+
+_OF_ONE_TIME = tuple(
+    name
+    for name in Measured._fields
+    if name not in {'step', 'slip_reference', 'slip_reference_rate'}
+)
+"""Fields of `Measured` that are (R,)."""
+
+
+class Feedback(Protocol):
+    """Feedback of R runs."""
+
+    def update(self, measured: Measured) -> np.ndarray:
+        """Advance by one period; return the feedback torques in N m, (R,)."""
+        ...
 
 
 class StackedController(ABC):

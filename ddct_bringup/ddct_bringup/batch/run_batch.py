@@ -18,7 +18,7 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.batch.batchable import kind_of
-from ddct_bringup.batch.controllers import StackedController
+from ddct_bringup.batch.mixed_controllers import MixedControllers
 from ddct_bringup.batch.results import part_of_stack, stacked_results, until
 from ddct_bringup.batch.simulate import Stack, loop_kind, simulate_batch
 from ddct_bringup.scores.scored_run import ScoredRun
@@ -37,7 +37,6 @@ _FEEDBACK_FACTOR = 1.0 + 2.0**-46
 _SLIP_TOLERANCE = 1e-10
 """Largest change of the slip in the rounding test, relative to the largest slip."""
 Run = tuple[RunSettings, Controller]
-_Kind = type[StackedController]
 
 
 def run_batch(runs: Sequence[Run], limits: Limits) -> list[ScoredRun | None]:
@@ -50,69 +49,66 @@ def run_batch(runs: Sequence[Run], limits: Limits) -> list[ScoredRun | None]:
     gets its reason there, and a chaotic one gets repeatable metrics.
     """
     results: list[ScoredRun | None] = [None] * len(runs)
-    for kind, chunk in _chunks(runs):
-        found = _results([runs[index] for index in chunk], kind, limits)
+    for chunk in _chunks(runs):
+        found = _results([runs[index] for index in chunk], limits)
         for index, result in zip(chunk, found, strict=True):
             results[index] = result
     return results
 
 
-def _stack(runs: Sequence[Run], kind: _Kind, feedback_factor: float = 1.0) -> Stack:
+def _stack(runs: Sequence[Run], feedback_factor: float = 1.0) -> Stack:
     settings, controllers = zip(*runs, strict=True)
-    stack = kind.of(controllers, [run.known for run in settings])
-    return simulate_batch(settings, stack, controllers[0].preview_steps, feedback_factor)
+    mixed = MixedControllers(controllers, [run.known for run in settings])
+    return simulate_batch(settings, mixed, mixed.preview_steps, feedback_factor)
 
 
-def _chunks(runs: Sequence[Run]) -> list[tuple[_Kind, list[int]]]:
-    """Return the indices of the runs that are computed together, chunk by chunk, and the kind."""
-    kinds = {id(controller): kind_of(controller) for _, controller in runs}
-    groups: dict[tuple[_Kind, Hashable], list[int]] = defaultdict(list)
-    for index, (settings, controller) in enumerate(runs):
-        kind = kinds[id(controller)]
-        alike = settings.scenario.score_window_s, controller.preview_steps, kind.key(controller)
-        groups[kind, (loop_kind(settings), alike)].append(index)
+def _chunks(runs: Sequence[Run]) -> list[list[int]]:
+    """Return the indices of the runs that are computed together, chunk by chunk."""
+    groups: dict[Hashable, list[int]] = defaultdict(list)
+    for index, (settings, _) in enumerate(runs):
+        groups[settings.scenario.score_window_s, loop_kind(settings)].append(index)
     return [
-        (kind, group[first : first + MOST_RUNS])
-        for (kind, _), group in groups.items()
+        group[first : first + MOST_RUNS]
+        for group in groups.values()
         for first in range(0, len(group), MOST_RUNS)
     ]
 
 
-def _results(runs: Sequence[Run], kind: _Kind, limits: Limits) -> list[ScoredRun | None]:
+def _results(runs: Sequence[Run], limits: Limits) -> list[ScoredRun | None]:
     try:
         with np.errstate(all='ignore'):  # what is not finite has no result
-            stack = _stack(runs, kind)
+            stack = _stack(runs)
             results: list[ScoredRun | None] = [None] * len(runs)
             for length in np.unique(stack.last[~stack.unsure]).tolist():
-                for index, result in _of_length(runs, kind, stack, length, limits):
+                for index, result in _of_length(runs, stack, length, limits):
                     results[index] = result
     except DdctError:
         if len(runs) == 1:
             return [None]
         half = len(runs) // 2
-        return _results(runs[:half], kind, limits) + _results(runs[half:], kind, limits)
+        return _results(runs[:half], limits) + _results(runs[half:], limits)
     return results
 
 
 def _of_length(
-    runs: Sequence[Run], kind: _Kind, stack: Stack, length: int, limits: Limits
+    runs: Sequence[Run], stack: Stack, length: int, limits: Limits
 ) -> Iterator[tuple[int, ScoredRun]]:
     """Yield the index and the result of the runs that end with a step and are repeatable."""
     found = np.flatnonzero(~stack.unsure & (stack.last == length))
     whole = len(found) == len(runs)
     part = until(stack.trajectory if whole else part_of_stack(stack.trajectory, found), length)
-    counts = _usable(part) & _repeatable([runs[index] for index in found.tolist()], kind, part)
+    counts = _usable(part) & _repeatable([runs[index] for index in found.tolist()], part)
     found = found[counts]
     if found.size:
         settings = [runs[index][0] for index in found.tolist()]
         kept = part if counts.all() else part_of_stack(part, counts)
         results = stacked_results(settings, kept, limits)
         for index, result in zip(found.tolist(), results, strict=True):
-            fallbacks = kind.fallbacks if stack.fed[index] else None
+            fallbacks = kind_of(runs[index][1]).fallbacks if stack.fed[index] else None
             yield index, replace(result, fallbacks=fallbacks)
 
 
-def _repeatable(runs: Sequence[Run], kind: _Kind, stack: Trajectory) -> np.ndarray:
+def _repeatable(runs: Sequence[Run], stack: Trajectory) -> np.ndarray:
     """
     Return for each run of a stack whether its rounding errors stay small, (R,).
 
@@ -125,7 +121,7 @@ def _repeatable(runs: Sequence[Run], kind: _Kind, stack: Trajectory) -> np.ndarr
     if len(suspects):
         suspected = [runs[index] for index in suspects.tolist()]
         slip = stack.slip_speed[suspects]
-        again = _stack(suspected, kind, _FEEDBACK_FACTOR).trajectory.slip_speed
+        again = _stack(suspected, _FEEDBACK_FACTOR).trajectory.slip_speed
         again = again[:, : slip.shape[-1]]
         difference = np.max(np.abs(again - slip), axis=-1)
         repeatable[suspects] = difference <= _SLIP_TOLERANCE * np.max(np.abs(slip), axis=-1)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.batch.architectures import Architectures
-from ddct_bringup.batch.controllers import Measured, StackedController
+from ddct_bringup.batch.controllers import Feedback, Measured
 from ddct_bringup.batch.open_loops import open_loop_kind
 from ddct_bringup.batch.plants import Plants, plant_kind
 from ddct_bringup.batch.recorder import Recorder
@@ -44,14 +44,14 @@ def loop_kind(settings: RunSettings) -> Hashable:
 
 def simulate_batch(
     runs: Sequence[RunSettings],
-    controllers: StackedController,
+    controllers: Feedback,
     preview_steps: int = 0,
     feedback_factor: float = 1.0,
 ) -> Stack:
     """
     Return the signals of `run_headless` that scores need, of many runs.
 
-    All runs are of one `loop_kind`, and their controllers of one kind with these preview steps.
+    All runs are of one `loop_kind`. Their controllers look at most `preview_steps` ahead.
     The feedback torques are multiplied by `feedback_factor`.
     """
     known, steps = [run.known for run in runs], runs[0].scenario.steps
