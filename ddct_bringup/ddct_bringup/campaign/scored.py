@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Score the runs of a run set: linear ones at once, all others step by step."""
+"""Score the runs of a run set: those that a batch takes at once, all others step by step."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -27,11 +27,11 @@ from ddct_plant.base.errors import FOREIGN_FAILURES
 
 @dataclass
 class Scorer:
-    """Scores runs, those of linear plants and controllers together."""
+    """Scores runs, those that a batch takes together."""
 
     limits: Limits
     at_once: bool = True
-    """Whether linear runs are computed together, to 1e-9 of the run step by step."""
+    """Whether runs that a batch takes are computed together, to 1e-9 of the run step by step."""
 
     def scored(self, runs: Iterable[PlannedRow | ImpossibleRow]) -> list[ScoredRow]:
         """
