@@ -11,6 +11,7 @@ from ddct_bringup.batch.closing import ClosingStages
 from ddct_bringup.batch.controllers import Feedback, Measured
 from ddct_bringup.batch.loads import Loads
 from ddct_bringup.batch.open_loops import known_load, make_open_loops, static_torques
+from ddct_bringup.batch.torque_phases import TorquePhases
 from ddct_plant.scenario.settings import KnownSettings
 from ddct_plant.shift.balance import WHOLE
 
@@ -35,9 +36,14 @@ class Architectures:
         self._closing = ClosingStages(scenarios, static) if scenarios[0].closing else None
         detailed = known[0].detailed and not known[0].shift
         self._start = scenarios[0].control_start_step if detailed else 0
+        self._torque_phases = TorquePhases(known, steps + 1) if known[0].shift else None
         self._last_request = np.zeros(len(known))
         self.fed = np.zeros(len(known), dtype=bool)
         """Whether feedback has been on, (R,)."""
+
+    def load_torque(self, step: int, vehicle_speed: Any) -> np.ndarray:
+        """Return C_load in N m of everything that resists, (R,), at V_x in m/s."""
+        return self._loads.torque(step, vehicle_speed)
 
     def update(
         self, measured: Measured, running: np.ndarray, on_coming: Any = WHOLE
@@ -49,7 +55,7 @@ class Architectures:
         in a shift with values (R,).
         """
         share = on_coming.share
-        load_torque = self._loads.torque(measured.step, measured.vehicle_speed)
+        load_torque = self.load_torque(measured.step, measured.vehicle_speed)
         measured = measured._replace(load_torque=load_torque)
         open_loop = share * self._open_loops(measured)
         on = running & (measured.step >= self._start) & (share == 1.0)
@@ -60,6 +66,8 @@ class Architectures:
             on = on & ~self._closing.closed
         measured = measured._replace(open_loop_torque=open_loop, on=on)
         self.fed |= on
+        if self._torque_phases and (share < 1.0).any():
+            measured = self._torque_phases.measured(measured, share)
         feedback = self._factor * self._controllers.update(measured)
         self._last_request = open_loop + feedback
         request: np.ndarray = on_coming.request(self._last_request)

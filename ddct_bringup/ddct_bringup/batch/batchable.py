@@ -10,6 +10,7 @@ from ddct_bringup.batch.linear_controllers import LinearControllers
 from ddct_bringup.batch.pedal import PedalControllers
 from ddct_bringup.batch.predictive import PredictiveControllers
 from ddct_bringup.batch.references import why_no_reference
+from ddct_bringup.batch.stacked_handovers import why_no_handover
 from ddct_controllers.interface import Controller
 from ddct_plant.base.options import key_of
 from ddct_plant.scenario.scenario import Scenario
@@ -21,7 +22,7 @@ SUPPORTED_KEYS = frozenset(
         *('clutch', 'friction', 'heat', 'brake', 'engine_limits', 'closing', 'sensors'),
         *('engine', 'initial', 'reference', 'slip_reference', 'slope', 'load', 'vehicle'),
         *('driveline', 'actuator', 'controllers', 'gear', 'gearbox', 'adjusted'),
-        *('engine_authority', 'engine_speed_reference', 'pedal_position'),
+        *('engine_authority', 'engine_speed_reference', 'pedal_position', 'shift'),
     }
 )
 """Scenario keys that a batch supports, or that have no effect in it."""
@@ -61,6 +62,8 @@ def kind_of(controller: Controller) -> type[StackedController]:
 def _why_not_known(known: KnownSettings) -> str:
     if not known.lockstep:
         return f'the mode is {known.mode}'
+    if known.shift and (reason := why_no_handover(known)):
+        return reason
     return why_no_reference(known) or _why_not_scenario(known.scenario)
 
 

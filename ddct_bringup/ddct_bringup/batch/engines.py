@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ddct_bringup.batch.engine_responses import EngineResponses
 from ddct_bringup.batch.limited_engines import LimitedEngines
 from ddct_bringup.batch.stacks import distinct
 from ddct_plant.base.timebase import STEPS_PER_S
@@ -14,7 +15,7 @@ from ddct_plant.scenario.scenario import Scenario
 
 class Engines:
     """
-    Engines of R runs, the counterpart of `Engine` without requests of a controller.
+    Engines of R runs, the counterpart of `Engine`.
 
     Either all of them have limits or none has.
     """
@@ -26,6 +27,7 @@ class Engines:
         first, places = distinct(demands)
         profiles = [demands[index].over(times) for index in first]
         self._demands = np.stack([profiles[place] for place in places], axis=-1)
+        self._responses = EngineResponses([each.engine_authority for each in scenarios])
         limits = [each.engine_limits for each in scenarios if each.engine_limits is not None]
         self._limited = LimitedEngines(limits) if limits else None
 
@@ -34,9 +36,12 @@ class Engines:
         demand: np.ndarray = self._demands[step]
         return demand
 
-    def torque(self, demand: np.ndarray, speed: np.ndarray) -> np.ndarray:
-        """Return C_m in N m over a period for the demands in N m and w_m in rad/s, (R,) each."""
-        return demand if self._limited is None else self._limited.deliver(demand, speed)
+    def torque(
+        self, demand: np.ndarray, request: np.ndarray | None, speed: np.ndarray
+    ) -> np.ndarray:
+        """Return C_m over a period for demands and requests in N m at w_m in rad/s, (R,) each."""
+        requested = demand if request is None else self._responses.deliver(demand, request)
+        return requested if self._limited is None else self._limited.deliver(requested, speed)
 
     def over(self, speed: np.ndarray) -> np.ndarray:
         """Return for w_m in rad/s, (R,), whether the engine ends the run."""

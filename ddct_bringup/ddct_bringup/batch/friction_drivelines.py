@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ddct_bringup.batch.motions import Motions
+from ddct_bringup.batch.motions import Forcing, Motions
 from ddct_bringup.batch.stacks import stacked
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.friction.driveline import FrictionDriveline, phase_of
@@ -18,6 +18,8 @@ from ddct_plant.scenario.plant import engagements
 from ddct_plant.scenario.scenario import Scenario
 
 _LOCKED, _SLIPPING, _OPEN = phase_of(0, 0.0), phase_of(1, 1.0), phase_of(1, 0.0)
+RunEvents = dict[int, tuple[PhaseEvent, ...]]
+"""Events of a clutch in a period, in the order of time, by the index of their run."""
 
 
 class FrictionDrivelines:
@@ -70,17 +72,9 @@ class FrictionDrivelines:
         return found._replace(slip_speed=slip, vehicle_accel=accel)
 
     @property
-    def phase_events(self) -> dict[int, tuple[PhaseEvent, ...]]:
-        """Return the events of the clutches in the last period by the index of their run."""
-        start_s = time_of_step(self._steps - 1)
-        return {
-            run: tuple(
-                PhaseEvent(start_s + event.time_s, event.kind, event.slip_acceleration)
-                for event in events
-                if event.element == ON_COMING
-            )
-            for run, events in self._motions.events.items()
-        }
+    def phase_events(self) -> dict[str, RunEvents]:
+        """Events in the last period, by the name of their signal."""
+        return {'phase_events': events_of(self._motions, ON_COMING, self._steps)}
 
     def step(
         self,
@@ -102,9 +96,22 @@ class FrictionDrivelines:
         static = kinetic
         if static_torque is not kinetic_torque:
             static = np.hstack([static_torque, holding])
-        self._motions.advance(self._inputs, kinetic, static, running)
+        self._motions.advance(Forcing(self._inputs, kinetic, static), running)
         self._phase = phases_of(self._motions.signs[:, ON_COMING], kinetic_torque[:, -1])
         self._steps += 1
+
+
+def events_of(motions: Motions, element: int, step: int) -> RunEvents:
+    """Return the events of an element in the period before a step, by the index of their run."""
+    start_s = time_of_step(step - 1)
+    return {
+        run: tuple(
+            PhaseEvent(start_s + event.time_s, event.kind, event.slip_acceleration)
+            for event in events
+            if event.element == element
+        )
+        for run, events in motions.events.items()
+    }
 
 
 def phases_of(signs: np.ndarray, capacities: np.ndarray) -> np.ndarray:

@@ -67,6 +67,6 @@ class LinearDrivelines:
         return np.zeros(len(self._values), dtype=bool)
 
     @property
-    def phase_events(self) -> dict[int, Any]:
-        """Events of the clutches in the last period by the index of their run: none."""
+    def phase_events(self) -> dict[str, Any]:
+        """Events in the last period, by the name of their signal: none."""
         return {}

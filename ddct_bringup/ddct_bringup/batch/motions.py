@@ -2,14 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Motions of many runs with dry friction: those without an event in a period step together."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from ddct_bringup.batch.stacks import by_run, distinct, product
 from ddct_plant.base.errors import DdctError
-from ddct_plant.hybrid.friction_system import Signs
+from ddct_plant.hybrid.friction_system import IntervalLayout, Signs
 from ddct_plant.hybrid.integrator import HybridIntegrator
 from ddct_plant.hybrid.interval_map import Event, Interval, IntervalMap
 
@@ -23,15 +23,27 @@ Runs = slice | np.ndarray
 """Indices of some runs; a slice for all of them, so that nothing is copied."""
 
 
-class _Forcing(NamedTuple):
+class Forcing(NamedTuple):
     """Values of a period as `HybridIntegrator.advance` takes them, of R runs."""
 
     inputs: np.ndarray
+    """Held inputs, (R, m)."""
     kinetic: np.ndarray
+    """Kinetic capacities, (R, c)."""
     static: np.ndarray
+    """Static capacities, (R, c)."""
 
-    def of(self, runs: Runs) -> '_Forcing':
-        return _Forcing(*(each[runs] for each in self))
+    def of(self, runs: Runs) -> 'Forcing':
+        """Return the values of some runs."""
+        return Forcing(*(each[runs] for each in self))
+
+    def in_force(self, signs: Signs, layout: IntervalLayout) -> np.ndarray:
+        """Return the capacities in a mode, (R, c): static for elements that stick."""
+        capacities = self.kinetic.copy()
+        for element, where in enumerate(layout.capacities):
+            if not signs[element]:
+                capacities[:, where] = self.static[:, where]
+        return capacities
 
 
 class Motions:
@@ -51,20 +63,18 @@ class Motions:
         """Events in the last period by the index of their run."""
         self.failed = np.zeros(len(start), dtype=bool)
         """Runs that could not be integrated, (R,); they are where they were before."""
-        self._maps = _Maps(integrators)
+        self._maps = Maps(integrators)
         self._integrators = integrators
 
-    def advance(
-        self, inputs: np.ndarray, kinetic: np.ndarray, static: np.ndarray, running: np.ndarray
-    ) -> None:
-        """
-        Integrate one interval of the runs of a mask, (R,).
+    def take(self, integrators: Sequence[HybridIntegrator], state: np.ndarray) -> None:
+        """Go on with other systems of the same elements, in the states (R, n)."""
+        self.state, self._maps, self._integrators = state, Maps(integrators), integrators
 
-        `inputs` (R, m), `kinetic` and `static` (R, c) are those of `HybridIntegrator.advance`.
-        """
-        forcing, self.events = _Forcing(inputs, kinetic, static), {}
+    def advance(self, forcing: Forcing, running: np.ndarray) -> None:
+        """Integrate one interval of the runs of a mask, (R,)."""
+        self.events = {}
         sizes = self._maps.speeds(self.state)
-        for signs, runs in _by_mode(self.signs, running & ~self.failed):
+        for signs, runs in by_mode(self.signs, running & ~self.failed):
             for some, at_once, matrix in self._maps.of_mode(signs, runs):
                 self._advance_some(signs, some, at_once, matrix, forcing, sizes)
 
@@ -74,18 +84,16 @@ class Motions:
         runs: Runs,
         at_once: IntervalMap,
         matrix: np.ndarray,
-        forcing: _Forcing,
+        forcing: Forcing,
         sizes: np.ndarray,
     ) -> None:
         """Integrate runs in one mode, those with a possible event one by one."""
-        inputs, kinetic, static = forcing.of(runs)
-        capacities, sizes = kinetic.copy(), sizes[runs].copy()
-        layout = self._integrators[0].layout
+        layout, given = self._integrators[0].layout, forcing.of(runs)
+        capacities, sizes = given.in_force(signs, layout), sizes[runs].copy()
         for element, where in enumerate(layout.capacities):
             if not signs[element]:
-                capacities[:, where] = static[:, where]
-                sizes[:, element] = static[:, where].max(axis=1)
-        values = product(matrix, np.hstack([self.state[runs], inputs, capacities]))
+                sizes[:, element] = capacities[:, where].max(axis=1)
+        values = product(matrix, np.hstack([self.state[runs], given.inputs, capacities]))
         ends = at_once.of_many(values, capacities)
         # Not `<`: a value that is not a number must not pass either.
         sure = (ends.least >= CLOSE * sizes).all(axis=1)
@@ -96,7 +104,7 @@ class Motions:
             self.state[run] = before[place]
             self._advance_one(run, signs, forcing)
 
-    def _advance_one(self, run: int, signs: Signs, forcing: _Forcing) -> None:
+    def _advance_one(self, run: int, signs: Signs, forcing: Forcing) -> None:
         """Integrate one run from event to event."""
         inputs, kinetic, static = (each[run].tolist() for each in forcing)
         if kinetic == static:
@@ -115,11 +123,16 @@ class Motions:
             self._maps.prepare_modes_of(run)
 
 
-class _Maps:
-    """Maps of R runs over an interval, by the mode: one matrix for all, or one for each run."""
+class Maps:
+    """Matrices of R runs over an interval, by the mode: one for all, or one for each run."""
 
-    def __init__(self, integrators: Sequence[HybridIntegrator]) -> None:
-        self._integrators = integrators
+    def __init__(
+        self,
+        integrators: Sequence[HybridIntegrator],
+        matrix_of: Callable[[IntervalMap], np.ndarray] = IntervalMap.matrix,
+    ) -> None:
+        """Take the matrix that `matrix_of` returns for the map of a run in a mode."""
+        self._integrators, self._matrix_of = integrators, matrix_of
         first, places = distinct(map(id, integrators))
         self._shared = len(first) == 1
         self._slips = by_run([integrators[i].system.size_of_h for i in first], places)
@@ -140,7 +153,7 @@ class _Maps:
         if self._shared:
             at_once = self._integrators[0].maps[signs]
             if signs not in self._matrices:
-                self._matrices[signs] = at_once.matrix()
+                self._matrices[signs] = self._matrix_of(at_once)
             yield runs, at_once, self._matrices[signs]
             return
         heights = self._made(signs, runs)[runs]
@@ -166,7 +179,7 @@ class _Maps:
         if not heights[runs].all():
             HybridIntegrator.prepare(self._integrators, signs)
             for run in np.arange(count)[runs][heights[runs] == 0].tolist():
-                matrix = self._integrators[run].maps[signs].matrix()
+                matrix = self._matrix_of(self._integrators[run].maps[signs])
                 key = signs, len(matrix)
                 if key not in self._stacks:
                     self._stacks[key] = np.empty((count, *matrix.shape))
@@ -174,7 +187,7 @@ class _Maps:
         return heights
 
 
-def _by_mode(signs: np.ndarray, running: np.ndarray) -> Iterator[tuple[Signs, Runs]]:
+def by_mode(signs: np.ndarray, running: np.ndarray) -> Iterator[tuple[Signs, Runs]]:
     """Yield each mode of running runs, and these runs."""
     codes = signs @ 3 ** np.arange(signs.shape[1])
     if running.all() and (codes == codes[0]).all():

@@ -9,25 +9,28 @@ import numpy as np
 
 from ddct_bringup.batch.actuators import Actuators
 from ddct_bringup.batch.engines import Engines
-from ddct_bringup.batch.friction_drivelines import FrictionDrivelines
+from ddct_bringup.batch.friction_drivelines import FrictionDrivelines, RunEvents
 from ddct_bringup.batch.linear_drivelines import LinearDrivelines
 from ddct_bringup.batch.loads import Loads
 from ddct_bringup.batch.sensors import Sensors
+from ddct_bringup.batch.shift_drivelines import ShiftDrivelines
 from ddct_bringup.batch.sides import LinearSides, StickSlipSides
 from ddct_plant.base.timebase import STEPS_PER_S
-from ddct_plant.models.driveline import PhaseEvent
 from ddct_plant.models.initial_state import InitialState
 from ddct_plant.plant import Observation, PlantReply, Tick
 from ddct_plant.scenario.initial_state import initial_state
-from ddct_plant.scenario.plant import holding_torque, make_load
+from ddct_plant.scenario.plant import engagements, holding_torque, make_load
+from ddct_plant.scenario.rules.shift import gears_of
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.shift.roles import ROLES
 
 
 def plant_kind(settings: RunSettings) -> Hashable:
     """Return what runs with common `Plants` share."""
     scenario = settings.scenario
     limited, sensed = scenario.engine_limits is not None, scenario.sensors is not None
-    return scenario.steps, settings.stick_slip, limited, sensed
+    changes = tuple(engagements(scenario)[1]) if settings.shift else None
+    return scenario.steps, settings.stick_slip, limited, sensed, changes
 
 
 class Plants:
@@ -44,40 +47,66 @@ class Plants:
         self._sensors = Sensors(runs, steps) if scenarios[0].sensors else None
         self._engines = Engines(scenarios, steps)
         self._loads = Loads([make_load(run) for run in runs], steps)
-        actuators = _actuators(runs, initial, 0, steps)
-        self._drivelines: FrictionDrivelines | LinearDrivelines
+        actuators = [
+            _actuators(runs, initial, side, steps) for side in range(len(initial[0].sides))
+        ]
+        self._drivelines: ShiftDrivelines | FrictionDrivelines | LinearDrivelines
         self._sides: list[StickSlipSides | LinearSides]
         self._holding: np.ndarray | None = None
+        self._ratios = (
+            np.array([gears_of(run.known.scenario).ratio for run in runs])
+            if runs[0].shift
+            else None
+        )
         if runs[0].stick_slip:
-            self._drivelines = FrictionDrivelines(scenarios, initial)
-            self._sides = [StickSlipSides(runs, actuators)]
+            drivelines = ShiftDrivelines if runs[0].shift else FrictionDrivelines
+            self._drivelines = drivelines(scenarios, initial)
+            self._sides = [
+                StickSlipSides(runs, *each) for each in zip(actuators, ROLES, strict=False)
+            ]
             times = np.arange(steps + 1) / STEPS_PER_S
             capacities = [holding_torque(run).over(times) for run in runs]
             self._holding = np.stack(capacities, axis=-1)
         else:
             angles = self._sensors is not None
             self._drivelines = LinearDrivelines(scenarios, initial, angles=angles)
-            self._sides = [LinearSides(runs, actuators)]
+            self._sides = [LinearSides(runs, actuators[0])]
 
     def tick(self, step: int) -> Tick:
         """Return the true outputs and the measurements at step k."""
         true = self._drivelines.outputs()
         demand: Any = self._engines.demand(step)
-        measured: Any = true if self._sensors is None else self._sensors.speeds(step, true)
-        return Tick(step, true, measured, None, demand)
+        off_going: Any = true.off_going and true.off_going.slip_speed
+        if self._sensors is None:
+            return Tick(step, true, true, off_going, demand)
+        measured: Any = self._sensors.speeds(step, true)
+        if self._ratios is not None:
+            off_going = measured.engine_speed - self._ratios * measured.shaft_speed
+        return Tick(step, true, measured, off_going, demand)
 
-    def observe(self, tick: Tick) -> Observation:
-        """Return what the controllers receive at a tick."""
+    def observe(self, tick: Tick, torque_cut: Any = None) -> Observation:
+        """
+        Return what the controllers receive at a tick.
+
+        `torque_cut` in N m, (R,), is what the handovers of shifts take off the driver's demand.
+        """
         demand: Any = tick.demand
         speed: Any = tick.true.engine_speed
-        torque: Any = self._engines.torque(demand, speed)
+        requested = None if torque_cut is None else demand - torque_cut
+        torque: Any = self._engines.torque(demand, requested, speed)
         reported: Any = torque
         if self._sensors is not None:
             reported = self._sensors.torque(tick.step, torque)
-        return Observation(tick, None, torque, reported)
+        return Observation(tick, requested, torque, reported)
 
-    def reply(self, observation: Observation, torque_request: np.ndarray) -> PlantReply:
-        """Return torques and recorded signals of the step of an observation; requests in N m."""
+    def reply(
+        self, observation: Observation, torque_request: np.ndarray, off_going_request: Any = None
+    ) -> PlantReply:
+        """
+        Return torques and recorded signals of the step of an observation.
+
+        The requests, (R,) in N m, are those of the clutches; only a shift has an off-going one.
+        """
         tick, engine_torque = observation.tick, observation.delivered
         step, true = tick.step, tick.true
         speed: Any = true.vehicle_speed
@@ -85,6 +114,11 @@ class Plants:
         signals: dict[str, Any] = true.signals
         torques, values = self._sides[0].reply(step, torque_request, true)
         signals.update(values)
+        if true.off_going is not None:
+            side = self._sides[1]
+            of_other, values = side.reply(step, off_going_request, true.off_going)
+            torques += of_other
+            signals.update(values)
         if self._holding is not None:
             torques = self._holding[step], *torques
         signals['torque_demand'] = tick.demand
@@ -99,8 +133,8 @@ class Plants:
         return self._engines.over(speed)
 
     @property
-    def phase_events(self) -> dict[int, tuple[PhaseEvent, ...]]:
-        """Events of the clutches in the last period by the index of their run."""
+    def phase_events(self) -> dict[str, RunEvents]:
+        """Events in the last period, by the name of their signal."""
         return self._drivelines.phase_events
 
     @property

@@ -4,6 +4,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Hashable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from ddct_reference.descent import Descent
 from ddct_reference.factory import make_descent, nominal_settings
 
 _RAMP = 'ramp'
-_Points = tuple[np.ndarray, np.ndarray]
+Points = tuple[np.ndarray, np.ndarray]
 """References in rad/s and their rates in rad/s^2."""
 
 
@@ -47,15 +48,13 @@ class References:
         self._points = preview_steps + 1
         self._stored = None if runs[0].detailed else nominal_slips(runs, self._start)
         self._start_value = np.zeros(len(runs)) if self._stored is None else self._stored[:, -1]
-        periods = np.arange(max(steps - self._start + 1, 0) + preview_steps)
-        kinds: dict[str, type[_Descents]] = {_RAMP: _Ramps, PROFILE: _Profiles}
-        self._descents = kinds.get(_kind(runs[0]), _Timed)(runs, periods)
+        self._descents = make_descents(runs, preview_steps, steps)
 
-    def update(self, step: int, slip_speed: np.ndarray) -> _Points:
+    def update(self, step: int, slip_speed: np.ndarray, share: Any = 1.0) -> Points:
         """
         Return references and rates at steps k, k + 1, ..., k + P, (R, P + 1), for w_d, (R,).
 
-        The units are rad/s and rad/s^2.
+        The units are rad/s and rad/s^2. `share` is that of a shift, here 1.
         """
         if self._stored is None and step <= self._start:
             self._start_value = slip_speed
@@ -72,7 +71,7 @@ class References:
         )
         return speeds, rates
 
-    def _before(self, step: int, count: int) -> _Points:
+    def _before(self, step: int, count: int) -> Points:
         """Return the points at steps k, k + 1, ... before control start."""
         if self._stored is None:
             speeds = np.repeat(self._start_value[:, np.newaxis], count, axis=1)
@@ -81,7 +80,7 @@ class References:
         return values[:, :-1], np.diff(values) / PERIOD_S
 
 
-class _Descents(ABC):
+class Descents(ABC):
     """Descents of R runs from control start on, the counterpart of `Descent`."""
 
     @abstractmethod
@@ -89,27 +88,45 @@ class _Descents(ABC):
         """Compute what does not depend on the start, at whole periods 0, 1, ... after it."""
 
     @abstractmethod
-    def at(self, start: np.ndarray, first: int, count: int) -> _Points:
-        """Return the points of `count` periods from `first` on, (R, count), for starts (R,)."""
+    def at(self, start: np.ndarray, first: int | np.ndarray, count: int) -> Points:
+        """
+        Return the points of `count` periods from `first` on, (R, count), for starts (R,).
+
+        `first` is one period, or that of each run, (R,).
+        """
 
 
-class _Ramps(_Descents):
+def make_descents(runs: Sequence[KnownSettings], preview_steps: int, steps: int) -> Descents:
+    """Return the descents of runs of one kind, for references up to step `steps`."""
+    periods = np.arange(max(steps - runs[0].scenario.control_start_step + 1, 0) + preview_steps)
+    kinds: dict[str, type[Descents]] = {_RAMP: _Ramps, PROFILE: _Profiles}
+    return kinds.get(_kind(runs[0]), _Timed)(runs, periods)
+
+
+def _of_periods(table: np.ndarray, first: int | np.ndarray, count: int) -> np.ndarray:
+    """Return the values of `count` periods from `first` on, (R, count), of all, (R, n)."""
+    if isinstance(first, int):
+        return table[:, first : first + count]
+    return np.take_along_axis(table, first[:, np.newaxis] + np.arange(count), axis=1)
+
+
+class _Ramps(Descents):
     """The counterpart of `CrfRamp`."""
 
     def __init__(self, runs: Sequence[KnownSettings], periods: np.ndarray) -> None:
         slopes = [run.scenario.reference.slope_rad_s2 for run in runs]
         self._slope = np.array(slopes)[:, np.newaxis]
-        self._times = periods * PERIOD_S
+        self._times = np.broadcast_to(periods * PERIOD_S, (len(runs), len(periods)))
 
-    def at(self, start: np.ndarray, first: int, count: int) -> _Points:
+    def at(self, start: np.ndarray, first: int | np.ndarray, count: int) -> Points:
         start = start[:, np.newaxis]
-        size = np.abs(start) - self._slope * self._times[first : first + count]
+        size = np.abs(start) - self._slope * _of_periods(self._times, first, count)
         ended = size <= 0.0
         rates = -np.copysign(self._slope, start)
         return np.where(ended, 0.0, np.copysign(size, start)), np.where(ended, 0.0, rates)
 
 
-class _Profiles(_Descents):
+class _Profiles(Descents):
     """The counterpart of `ProfileDescent`."""
 
     def __init__(self, runs: Sequence[KnownSettings], periods: np.ndarray) -> None:
@@ -119,12 +136,12 @@ class _Profiles(_Descents):
         following = np.stack([each.over(times + PERIOD_S) for each in profiles])
         self._rates = (following - self._values) / PERIOD_S
 
-    def at(self, start: np.ndarray, first: int, count: int) -> _Points:
-        points = slice(first, first + count)
-        return self._values[:, points], self._rates[:, points]
+    def at(self, start: np.ndarray, first: int | np.ndarray, count: int) -> Points:
+        values, rates = self._values, self._rates
+        return _of_periods(values, first, count), _of_periods(rates, first, count)
 
 
-class _Timed(_Descents):
+class _Timed(Descents):
     """The counterpart of `TimedDescent`."""
 
     def __init__(self, runs: Sequence[KnownSettings], periods: np.ndarray) -> None:
@@ -132,9 +149,10 @@ class _Timed(_Descents):
         found = np.array([_course(make_descent(runs[index]), periods) for index in firsts])
         self._shares, self._rates = found[places].transpose(2, 0, 1)
 
-    def at(self, start: np.ndarray, first: int, count: int) -> _Points:
-        points, start = slice(first, first + count), start[:, np.newaxis]
-        return start * self._shares[:, points], start * self._rates[:, points]
+    def at(self, start: np.ndarray, first: int | np.ndarray, count: int) -> Points:
+        start = start[:, np.newaxis]
+        shares, rates = self._shares, self._rates
+        return start * _of_periods(shares, first, count), start * _of_periods(rates, first, count)
 
 
 def _course(descent: Descent, periods: np.ndarray) -> list[tuple[float, float]]:

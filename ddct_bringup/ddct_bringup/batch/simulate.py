@@ -14,7 +14,12 @@ from ddct_bringup.batch.open_loops import open_loop_kind
 from ddct_bringup.batch.plants import Plants, plant_kind
 from ddct_bringup.batch.recorder import Recorder
 from ddct_bringup.batch.references import References, reference_kind
+from ddct_bringup.batch.shift_references import ShiftReferences
+from ddct_bringup.batch.stacked_handovers import handover_kind, make_handovers
+from ddct_controllers.handover.interface import HandoverMeasurement
+from ddct_plant.plant import Observation, PlantReply, Tick
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.shift.balance import WHOLE, OnComingShare
 
 
 class Stack(NamedTuple):
@@ -38,6 +43,7 @@ def loop_kind(settings: RunSettings) -> Hashable:
         scenario.equilibrium,
         open_loop_kind(known),
         known.scenario.closing is not None,
+        handover_kind(known) if settings.shift else None,
         reference_kind(known),
     )
 
@@ -54,25 +60,71 @@ def simulate_batch(
     All runs are of one `loop_kind`. Their controllers look at most `preview_steps` ahead.
     The feedback torques are multiplied by `feedback_factor`.
     """
-    known, steps = [run.known for run in runs], runs[0].scenario.steps
-    plants = Plants(runs, steps)
-    references = References(known, preview_steps, steps)
-    architectures = Architectures(known, controllers, steps, feedback_factor)
-    recorder = Recorder(steps, len(runs), sticking=runs[0].stick_slip)
+    loops = _Loops(runs, controllers, preview_steps, feedback_factor)
+    steps, plants = runs[0].scenario.steps, loops.plants
+    recorder = Recorder(steps, len(runs), sticking=runs[0].stick_slip, shift=runs[0].shift)
     running, last = np.ones(len(runs), dtype=bool), np.full(len(runs), steps)
     for step in range(steps + 1):
         tick = plants.tick(step)
-        observation = plants.observe(tick)
-        slip_speed: Any = tick.measured.slip_speed
-        speeds, rates = references.update(step, slip_speed)
-        measured = Measured.of_plants(observation, speeds, rates)
-        reply = plants.reply(observation, architectures.update(measured, running))
-        signals = {**reply.signals, 'slip_reference': speeds[:, 0]}
-        recorder.record(step, signals, plants.phase_events)
+        reply = loops.reply(tick, running)
+        recorder.record(step, reply.signals, plants.phase_events)
         if step:
             over = running & plants.over(tick)
             last[over], running = step, running & ~over
         if not running.any():
             break
         plants.advance(reply, running)
-    return Stack(recorder.trajectory(), last, plants.unsure, architectures.fed)
+    return Stack(recorder.trajectory(), last, plants.unsure, loops.fed)
+
+
+class _Loops:
+    """The loops of R runs of one kind: plants, handovers, references and controllers."""
+
+    def __init__(
+        self,
+        runs: Sequence[RunSettings],
+        controllers: Feedback,
+        preview_steps: int,
+        feedback_factor: float,
+    ) -> None:
+        known, steps = [run.known for run in runs], runs[0].scenario.steps
+        self.plants = Plants(runs, steps)
+        self._architectures = Architectures(known, controllers, steps, feedback_factor)
+        self._handovers = make_handovers(known) if runs[0].shift else None
+        self._references: References | ShiftReferences
+        references = ShiftReferences if runs[0].shift else References
+        self._references = references(known, preview_steps, steps)
+
+    @property
+    def fed(self) -> np.ndarray:
+        """Whether feedback has been on, (R,)."""
+        return self._architectures.fed
+
+    def reply(self, tick: Tick, running: np.ndarray) -> PlantReply:
+        """Return torques and recorded signals of a step; advance all but the plants."""
+        if self._handovers is None:
+            observation = self.plants.observe(tick)
+            request, signals = self._request(observation, running, WHOLE)
+            reply = self.plants.reply(observation, request)
+        else:
+            now = HandoverMeasurement.of_tick(tick)
+            load_torque = self._architectures.load_torque(now.step, now.vehicle_speed)
+            command = self._handovers.update(now, load_torque)
+            observation = self.plants.observe(tick, command.torque_cut)
+            request, signals = self._request(observation, running, command.on_coming)
+            reply = self.plants.reply(observation, request, command.off_going_request)
+            reply.signals.update(command.signals)
+        reply.signals.update(signals)
+        return reply
+
+    def _request(
+        self, observation: Observation, running: np.ndarray, on_coming: OnComingShare
+    ) -> tuple[np.ndarray, dict[str, Any]]:
+        """Return the requests of the clutches, in a shift the on-coming ones, and signals."""
+        tick = observation.tick
+        slip_speed: Any = tick.measured.slip_speed
+        share: Any = on_coming.share
+        speeds, rates = self._references.update(tick.step, slip_speed, share)
+        measured = Measured.of_plants(observation, speeds, rates)
+        request = self._architectures.update(measured, running, on_coming)
+        return request, {'slip_reference': speeds[:, 0]}

@@ -171,6 +171,22 @@ class IntervalMap:
             work[:, element] = values[:, integral] * capacities[:, place]
         return ManyEnds(values[:, : self._states], values[:, self._friction], work, least)
 
+    def slip_integrals(self, element: int) -> np.ndarray:
+        """
+        Return the rows on v of the integrals of |s| of a slipping element, (P + 1, v).
+
+        Each has the weight of a node, which is 1 there and linear to 0 at the nodes beside it, so
+        that the sum of the integrals times the capacities at the nodes is the friction work.
+        """
+        rows = next(integrals for each, integrals, _ in self._work if each == element)
+        return self._rows[rows]
+
+    def twice_torque(self, element: int) -> np.ndarray:
+        """Return the rows on v of twice the torque of a sticking element at the nodes, (k, v)."""
+        first = dict(self._sticking)[element]
+        checks = self._rows[self._results :].reshape(-1, len(self._guarded), self._rows.shape[1])
+        return checks[:, first + 1] - checks[:, first]
+
     def by_piece(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
         """
         Return states, slip integrals and event-free pieces, as if the mode lasted for all pieces.
