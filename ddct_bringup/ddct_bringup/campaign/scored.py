@@ -21,6 +21,7 @@ from ddct_bringup.many_runs.work import Work
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.scoring import run_without_score
 from ddct_bringup.verdict.limits import Limits
+from ddct_controllers.interface import Controller
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import FOREIGN_FAILURES
 
@@ -63,16 +64,11 @@ class Scorer:
 
     def _together(self, runs: Sequence[PlannedRow]) -> dict[int, ScoredRun]:
         """Return the scores of the runs that can be computed at once, by index."""
-        suited = []
-        for run in runs if self.at_once else ():
-            if run.controller.compiled:
-                continue
-            try:
-                controller = make_controller(run.controller, run.settings.known)
-            except FOREIGN_FAILURES:
-                continue  # the run step by step gives the reason
-            if not why_not_batchable(run.settings, controller):
-                suited.append((run, controller))
+        suited = [
+            (run, controller)
+            for run in (runs if self.at_once else ())
+            if (controller := _batchable(run)) is not None
+        ]
         results = run_batch(
             [(run.settings, controller) for run, controller in suited], self.limits
         )
@@ -84,18 +80,21 @@ class Scorer:
 
 
 def are_together(campaign: Campaign) -> bool:
-    """Return whether the first run of each controller of a campaign can be computed at once."""
-    for first in range(0, campaign.runs, campaign.cases):
-        (run,) = campaign.planned(first, first + 1)
-        if isinstance(run, ImpossibleRow) or run.controller.compiled:
-            return False
-        try:
-            controller = make_controller(run.controller, run.settings.known)
-        except FOREIGN_FAILURES:
-            return False
-        if why_not_batchable(run.settings, controller):
-            return False
-    return True
+    """Return whether a batch takes the first run of at least half of the controllers."""
+    first_runs = [campaign.planned(at, at + 1) for at in range(0, campaign.runs, campaign.cases)]
+    taken = [_batchable(run) is not None for (run,) in first_runs]
+    return 2 * sum(taken) >= len(taken)
+
+
+def _batchable(run: PlannedRow | ImpossibleRow) -> Controller | None:
+    """Return the controller of a run that a batch takes, None of another run."""
+    if isinstance(run, ImpossibleRow) or run.controller.compiled:
+        return None
+    try:
+        controller = make_controller(run.controller, run.settings.known)
+    except FOREIGN_FAILURES:
+        return None  # the run step by step gives the reason
+    return None if why_not_batchable(run.settings, controller) else controller
 
 
 @dataclass(frozen=True)
