@@ -30,6 +30,8 @@ from ddct_plant.scenario.settings import RunSettings
 
 MOST_RUNS = 1000
 """Largest number of runs at once: their matrices of a step fit the processor's cache."""
+MOST_CARS = 250
+"""Largest number of drivelines with plates that stick at once: each takes half a megabyte."""
 _FEWEST_SWITCHES = 5
 """Fewest saturation switches that trigger the rounding test."""
 _FEEDBACK_FACTOR = 1.0 + 2.0**-46
@@ -67,11 +69,22 @@ def _chunks(runs: Sequence[Run]) -> list[list[int]]:
     groups: dict[Hashable, list[int]] = defaultdict(list)
     for index, (settings, _) in enumerate(runs):
         groups[settings.scenario.score_window_s, loop_kind(settings)].append(index)
-    return [
-        group[first : first + MOST_RUNS]
-        for group in groups.values()
-        for first in range(0, len(group), MOST_RUNS)
-    ]
+    return [chunk for group in groups.values() for chunk in _parts(runs, group)]
+
+
+def _parts(runs: Sequence[Run], group: Sequence[int]) -> Iterator[list[int]]:
+    """Yield the indices of a group in parts of at most MOST_RUNS runs and MOST_CARS cars."""
+    part: list[int] = []
+    cars: set[Hashable] = set()
+    for index in group:
+        settings = runs[index][0]
+        if settings.stick_slip:  # such cars have a map of each of their modes
+            cars.add(settings.scenario.driveline)
+        if len(part) == MOST_RUNS or len(cars) > MOST_CARS:
+            yield part
+            part, cars = [], {settings.scenario.driveline}
+        part.append(index)
+    yield part
 
 
 def _results(runs: Sequence[Run], limits: Limits) -> list[ScoredRun | None]:

@@ -9,6 +9,7 @@ from functools import partial
 from itertools import product
 from math import isfinite
 from typing import TypeVar
+from weakref import WeakMethod
 
 import numpy as np
 
@@ -35,10 +36,13 @@ class _Modes(dict[Signs, Made]):
     """Results of a function of the mode, each of which is made when it is first needed."""
 
     def __init__(self, make: Callable[[Signs], Made]) -> None:
-        self._make = make
+        # Weak, so that an integrator and what it holds go with its last user.
+        self._make = WeakMethod(make)
 
     def __missing__(self, signs: Signs) -> Made:
-        made = self[signs] = self._make(signs)
+        make = self._make()
+        assert make is not None, 'its owner is there'
+        made = self[signs] = make(signs)
         return made
 
 
