@@ -14,12 +14,17 @@ from ddct_bringup.floor.program.linear_program import (
     WEAK_DUALITY,
     Certificate,
     LinearProgram,
+    certified,
     require_proof,
 )
 from ddct_bringup.floor.program.peak import late_peaks, peak_program
 from ddct_bringup.floor.program.quadratic import least_squares
 from ddct_bringup.floor.program.solve import ray_of, solve
 
+_GAP = 1e-5
+"""Largest share of a square by which other multipliers than those of its least may do better."""
+_STEPS = 3
+"""Number of steps by which the point of a quadratic program comes nearer to its least."""
 _WINDOWS = 3
 """Number of stretches whose bounds are computed where a metric is the largest over all."""
 
@@ -75,10 +80,10 @@ def bound_of(case: Case, objective: Peak | RootMeanSquare, signals: Signals) -> 
         return _peak(case, rows, objective.one_sided)
     length = objective.samples
     if not length:
-        return _mean_square(case, rows)
-    first, best = 0, None
+        return _mean_square(case, rows)[0]
+    first, best, used = 0, None, None
     for _ in range(_WINDOWS):
-        found = _mean_square(case, rows[first : first + length])
+        found, used = _mean_square(case, rows[first : first + length], used)
         if found.point is None or found.least is None:
             return found
         squares = np.cumsum(np.concatenate([[0.0], (rows @ found.point) ** 2]))
@@ -135,12 +140,16 @@ def _peak(case: Case, rows: np.ndarray, one_sided: bool) -> Bound:
     )
 
 
-def _mean_square(case: Case, rows: np.ndarray) -> Bound:
+def _mean_square(
+    case: Case, rows: np.ndarray, used: np.ndarray | None = None
+) -> tuple[Bound, np.ndarray | None]:
     """
     Return the bound of the r.m.s. of `rows` (n, columns) times the variables.
 
     f(z) >= f(z_0) + f'(z_0) (z - z_0) for a convex f. So the proof is that of the linear program
-    with the slope at the solution z_0 as cost.
+    with the slope at the solution z_0 as cost: by the multipliers of z_0, or where others may do
+    better by those of that program. The second result is the mask of the inequalities that
+    z_0 needed; as `used` it makes the next call faster.
     """
     inequalities = case.inequalities
     limiting, limits = inequalities.rows, inequalities.limits
@@ -149,8 +158,9 @@ def _mean_square(case: Case, rows: np.ndarray) -> Bound:
     middle = np.concatenate([[1.0], (columns.low + columns.high) / 2.0])
     free = np.concatenate([[False], free_columns(case)])
     fixed = middle * ~free
+    target = weighted[:, free]
     solved = least_squares(
-        weighted[:, free],
+        target,
         weighted @ fixed,
         columns.low[free[1:]],
         columns.high[free[1:]],
@@ -159,25 +169,51 @@ def _mean_square(case: Case, rows: np.ndarray) -> Bound:
         case.equations[:, free],
         -case.equations @ fixed,
         middle[free],
+        used=used,
+        steps=_STEPS,
     )
     point = fixed.copy()
-    point[free] = middle[free] if solved is None else solved
+    point[free] = middle[free] if solved is None else solved.point
     square = float(np.sum((weighted @ point) ** 2))
     slope = 2.0 * weighted.T @ (weighted @ point)
     program = _linear(case, slope[1:], square - slope[1:] @ point[1:])
-    solution = solve(program, ~free[1:], middle[1:], inequalities.deferred)
-    if solution is None:
-        return without_run(case)
-    require_proof(solution.certificate, program)
-    return Bound(
-        float(np.sqrt(max(solution.certificate.claim, 0.0))),
+    certificate = None
+    # Without an effect no point was searched for, and there may be none.
+    if solved is not None and target.any():
+        used = solved.used
+        certificate = certified(WEAK_DUALITY, program, solved.rows, solved.equal)
+    if certificate is None or _left(program, certificate, point[1:], free[1:]) > _GAP * square:
+        solution = solve(program, ~free[1:], middle[1:], inequalities.deferred)
+        if solution is None:
+            return without_run(case), used
+        certificate = solution.certificate
+    require_proof(certificate, program)
+    bound = Bound(
+        float(np.sqrt(max(certificate.claim, 0.0))),
         LINEARISED,
         point,
         float(np.sqrt(square)),
-        solution.certificate,
+        certificate,
         program,
-        _engine_price(case, solution.certificate, square),
+        _engine_price(case, certificate, square),
     )
+    return bound, used
+
+
+def _left(
+    program: LinearProgram, certificate: Certificate, point: np.ndarray, free: np.ndarray
+) -> float:
+    """
+    Return by how much at most other multipliers could raise the bound of a program.
+
+    It is the cost at a point (n,) less the bound, but for what the intervals of variables that are
+    not `free` (n,) cost: a solver keeps these where they are.
+    """
+    slopes = program.cost + certificate.row_multipliers @ program.rows
+    slopes += certificate.equal_multipliers @ program.equal_rows
+    costs = slopes * point - np.minimum(slopes * program.low, slopes * program.high)
+    gap = program.cost @ point + program.constant - certificate.claim
+    return float(gap - costs[~free].sum())
 
 
 def without_run(case: Case) -> Bound:

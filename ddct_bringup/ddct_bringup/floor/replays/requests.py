@@ -95,7 +95,7 @@ def requests_near(
         choice.centre,
         _QUADRATIC,
     )
-    return best, None
+    return None if best is None else best.point, None
 
 
 def _clean(case: Case, given: np.ndarray, failed: int) -> _Choice:
