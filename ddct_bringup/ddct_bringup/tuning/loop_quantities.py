@@ -34,12 +34,11 @@ _QUANTITY: Mapping[str, Callable[[CornerLoops], float | None]] = {
 
 def nominal_settings(campaign: Campaign, cases: Sequence[int]) -> list[RunSettings]:
     """Return the settings of the first case of each scenario, clutch and architecture."""
-    found: dict[tuple[str, ...], RunSettings] = {}
+    varied = campaign.varied(range(campaign.cases))
+    first: dict[tuple[str, ...], int] = {}
     for case in cases:
-        run = campaign.run(case)
-        kind = tuple(str(run.varied.get(key, '')) for key in COMMON)
-        found.setdefault(kind, run.settings)
-    return list(found.values())
+        first.setdefault(tuple(str(varied[case].get(key, '')) for key in COMMON), case)
+    return [campaign.run(case).settings for case in first.values()]
 
 
 def loop_quantities(

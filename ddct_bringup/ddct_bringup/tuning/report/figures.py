@@ -12,6 +12,7 @@ import numpy as np
 from ddct_bringup.report.page_parts import unit_text
 from ddct_bringup.tuning.result import Figures, FrontEntry, GoalEntry, TuningResult
 from ddct_bringup.tuning.specification.goals import MINIMISE
+from ddct_bringup.tuning.specification.parameters import LOG
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -102,11 +103,16 @@ def _worst(result: TuningResult, study: 'Study') -> list[float]:
 
 def slices_figure(study: 'Study', goal: GoalEntry, place: int) -> 'Figure':
     """Return the value of an objective over each parameter, without its highest tenth."""
+    from matplotlib.ticker import NullFormatter
     from optuna.visualization.matplotlib import plot_slice
 
     with _plots():
         drawn: Any = plot_slice(study, target=_objective(place), target_name=_label(goal))
     panels: list[Axes] = np.atleast_1d(drawn).tolist()
+    for panel in panels:
+        if panel.get_xscale() == LOG:
+            panel.xaxis.set_major_formatter('{x:g}')
+            panel.xaxis.set_minor_formatter(NullFormatter())
     values = [each.values[place] for each in study.get_trials(deepcopy=False) if each.values]
     if values:
         low, high = min(values), float(np.quantile(values, 0.9))
