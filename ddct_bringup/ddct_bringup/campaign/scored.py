@@ -24,6 +24,15 @@ from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.interface import Controller
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import FOREIGN_FAILURES
+from ddct_plant.scenario.settings import KnownSettings
+
+_Made = dict[int, tuple[KnownSettings, Controller]]
+"""
+The controller that was made last of each specification, with its known settings.
+
+Runs in turn with equal known settings share it.
+"""
+
 
 
 @dataclass
@@ -64,10 +73,11 @@ class Scorer:
 
     def _together(self, runs: Sequence[PlannedRow]) -> dict[int, ScoredRun]:
         """Return the scores of the runs that can be computed at once, by index."""
+        made: _Made = {}
         suited = [
             (run, controller)
             for run in (runs if self.at_once else ())
-            if (controller := _batchable(run)) is not None
+            if (controller := _batchable(run, made)) is not None
         ]
         results = run_batch(
             [(run.settings, controller) for run, controller in suited], self.limits
@@ -82,18 +92,21 @@ class Scorer:
 def are_together(campaign: Campaign) -> bool:
     """Return whether a batch takes the first run of at least half of the controllers."""
     first_runs = [campaign.planned(at, at + 1) for at in range(0, campaign.runs, campaign.cases)]
-    taken = [_batchable(run) is not None for (run,) in first_runs]
+    taken = [_batchable(run, {}) is not None for (run,) in first_runs]
     return 2 * sum(taken) >= len(taken)
 
 
-def _batchable(run: PlannedRow | ImpossibleRow) -> Controller | None:
+def _batchable(run: PlannedRow | ImpossibleRow, made: _Made) -> Controller | None:
     """Return the controller of a run that a batch takes, None of another run."""
     if isinstance(run, ImpossibleRow) or run.controller.compiled:
         return None
-    try:
-        controller = make_controller(run.controller, run.settings.known)
-    except FOREIGN_FAILURES:
-        return None  # the run step by step gives the reason
+    chosen, known = run.controller, run.settings.known
+    if id(chosen) not in made or made[id(chosen)][0] != known:
+        try:
+            made[id(chosen)] = known, make_controller(chosen, known)
+        except FOREIGN_FAILURES:
+            return None  # the run step by step gives the reason
+    controller = made[id(chosen)][1]
     return None if why_not_batchable(run.settings, controller) else controller
 
 

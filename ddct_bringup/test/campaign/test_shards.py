@@ -16,6 +16,7 @@ from ddct_bringup.campaign.shards import CampaignWork, runs_in, shard_size_of, s
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.manifest.code import code_digest
 from ddct_bringup.verdict.limits import packaged_limits
+from ddct_controllers.registry import make_controller
 
 GAIN = 'controllers.pi.proportional_gain'
 
@@ -47,6 +48,20 @@ def test_each_run_is_scored_over_the_window_that_its_scenario_gives(monkeypatch)
     alone = rows_of(**content)
     for row, expected in zip(rows, alone, strict=True):
         assert differences(row, expected) == []
+
+
+def test_runs_with_equal_known_settings_share_a_controller(monkeypatch) -> None:
+    made = []
+
+    def counted(chosen, known):
+        made.append(chosen.name)
+        return make_controller(chosen, known)
+
+    monkeypatch.setattr(scored, 'make_controller', counted)
+    wear = {'wear_gain': [0.8, 0.9, 1.0], 'duration_s': [1.2]}
+    rows = rows_of(controllers=['ls8', 'mpc3'], grid=wear)
+    assert {row['path'] for row in rows} == {VECTORISED}
+    assert sorted(made) == ['ls8', 'mpc3']
 
 
 @pytest.mark.parametrize(('why_not', 'cases'), [('', 500), ('not now', 40)])

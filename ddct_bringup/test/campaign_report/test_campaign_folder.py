@@ -186,10 +186,10 @@ def test_a_newer_version_of_the_results_or_the_manifest_is_named(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     table = parquet.read_table(folder / RESULTS)
-    newer = table.replace_schema_metadata({'schema_version': '4'})
+    newer = table.replace_schema_metadata({'schema_version': '5'})
     parquet.write_table(newer, folder / RESULTS)
     seal(folder)
-    assert 'schema_version is 4, this version reads up to 3' in complaint(folder, capsys)
+    assert 'schema_version is 5, this version reads up to 4' in complaint(folder, capsys)
     manifest = json.loads((folder / MANIFEST).read_text())
     (folder / MANIFEST).write_text(json.dumps({**manifest, 'schema_version': 9}))
     assert 'schema_version is 9' in complaint(folder, capsys)

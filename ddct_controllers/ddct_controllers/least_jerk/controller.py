@@ -49,8 +49,9 @@ class LeastJerk(Controller):
         self._damping = design.driveline.engine_damping
         self._sticks, self._shifts = design.sticks, design.shifts
         self._static = design.static
-        self._actuator = ActuatorTorque(design.actuator)
-        self._lag_s = self._actuator.ahead * PERIOD_S
+        self.actuator = ActuatorTorque(design.actuator)
+        """Known actuator, to which the requests go."""
+        self._lag_s = self.actuator.ahead * PERIOD_S
         """Time in s after which a request acts."""
         self._clutch, self._slip, self._guard = design.clutch(), design.slip(), design.guard()
         self._plan = TorquePlan(design.limits)
@@ -61,7 +62,7 @@ class LeastJerk(Controller):
 
     def reset(self) -> None:
         """Clear every estimate and the plan."""
-        self._actuator.reset(self.design.initial_request)
+        self.actuator.reset(self.design.initial_request)
         parts = self._clutch, self._slip, self._demand, self._lock, self._plan, self._engine
         for part in parts:
             part.reset()
@@ -162,13 +163,13 @@ class LeastJerk(Controller):
 
     def _advance(self, measurement: Measurement, request: float) -> None:
         """Store what acts in the coming period."""
-        self._torque_before, self._torque = self._torque, self._actuator.mean_torque(request)
+        self._torque_before, self._torque = self._torque, self.actuator.mean_torque(request)
         self._engine_torque = measurement.engine_torque
-        self._actuator.advance(request)
+        self.actuator.advance(request)
 
     def _part(self, measurement: Measurement) -> None:
         """Start a plan for plates that have parted again."""
-        carried = self._clutch.carried(self._actuator.request)
+        carried = self._clutch.carried(self.actuator.request)
         needed = abs(self._constant_slip(measurement, self._demand.level))
         self._plan.part(min(carried, PARTED_SHARE * needed + PARTED_N_M))
 
@@ -180,8 +181,8 @@ class LeastJerk(Controller):
         ahead_s = self._lag_s + options.smoothing_s
         # Momentum of the slip when a new request acts, from the torque of those so far.
         error = self._slip.surplus_error
-        passed = self._clutch.gain * self._actuator.torque_ahead()
-        passed += self._actuator.ahead * (
+        passed = self._clutch.gain * self.actuator.torque_ahead()
+        passed += self.actuator.ahead * (
             self._clutch.offset + error - needed - 0.5 * rise * self._lag_s
         )
         momentum = self._slip.inertia * self._slip.slip - PERIOD_S * passed

@@ -8,16 +8,15 @@ import numpy as np
 
 from ddct_bringup.batch.stacks import by_run, distinct, product
 from ddct_controllers.least_jerk.actuator_model import ActuatorTorque
-from ddct_plant.models.actuator import ActuatorParameters
 
 
 class ActuatorTorques:
     """The counterpart of `ActuatorTorque`; all actuators have as many requests that wait."""
 
-    def __init__(self, actuators: Sequence[ActuatorParameters], request: np.ndarray) -> None:
+    def __init__(self, actuators: Sequence[ActuatorTorque], request: np.ndarray) -> None:
         """Start at rest on requests in N m."""
-        first, places = distinct(actuators)
-        models = [ActuatorTorque(actuators[index]) for index in first]
+        first, places = distinct(map(id, actuators))
+        models = [actuators[index] for index in first]
         self.ahead, self._inputs, self._delayed = sizes(models[0])
         self._step = by_run([np.hstack([each.step, each.held]) for each in models], places)
         self._mean = by_run([np.array([each.mean]) for each in models], places)

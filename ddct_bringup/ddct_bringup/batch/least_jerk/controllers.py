@@ -16,7 +16,6 @@ from ddct_bringup.batch.least_jerk.values import numbers
 from ddct_bringup.batch.observers import measured_speeds
 from ddct_bringup.batch.open_loops import static_torques
 from ddct_controllers.interface import Controller
-from ddct_controllers.least_jerk.actuator_model import ActuatorTorque
 from ddct_controllers.least_jerk.controller import (
     CARRIES_LAGS,
     PARTED_N_M,
@@ -25,7 +24,6 @@ from ddct_controllers.least_jerk.controller import (
     STANDING_RAD_S,
     LeastJerk,
 )
-from ddct_controllers.least_jerk.design import LeastJerkDesign
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.scenario.settings import KnownSettings
 
@@ -37,8 +35,9 @@ class LeastJerkControllers(StackedController):
     Clutches of all runs can lock, or none; all runs are gear shifts, or none.
     """
 
-    def __init__(self, designs: Sequence[LeastJerkDesign]) -> None:
-        """Take the designs of the controllers of R runs."""
+    def __init__(self, controllers: Sequence[LeastJerk]) -> None:
+        """Take the controllers of R runs."""
+        designs = [each.design for each in controllers]
         first, drivelines = designs[0], [each.driveline for each in designs]
         self._sticks, self._shifts = first.sticks, first.shifts
         self._static = static_torques(drivelines, first.static.equilibrium)
@@ -49,14 +48,13 @@ class LeastJerkControllers(StackedController):
             numbers(options, name) for name in ('smoothing_s', 'latest_s')
         )
         request = numbers(designs, 'initial_request')
-        actuators = [each.actuator for each in designs]
-        self._actuator = ActuatorTorques(actuators, request)
+        self._actuator = ActuatorTorques([each.actuator for each in controllers], request)
         self._lag_s = self._actuator.ahead * PERIOD_S
         self._clutch, self._slip = CarriedTorques(designs), RigidSlips(designs)
         self._guard, self._lock = EngineGuards(designs), LockPhases(designs)
         self._plan = TorquePlans([each.limits for each in designs], request)
         self._demand = DemandTrends(len(designs))
-        lags = np.array([each.lag_s for each in actuators])
+        lags = np.array([each.actuator.lag_s for each in designs])
         opening = np.round(CARRIES_LAGS * lags / PERIOD_S)
         self._opening = opening if self._shifts else np.zeros(len(designs))
         self._torque = self._torque_before = request
@@ -79,13 +77,13 @@ class LeastJerkControllers(StackedController):
         """Return whether clutches lock and shift, the equilibrium, and sizes of the actuator."""
         assert isinstance(controller, LeastJerk)
         design = controller.design
-        waiting = sizes(ActuatorTorque(design.actuator))
+        waiting = sizes(controller.actuator)
         return design.sticks, design.shifts, design.static.equilibrium, waiting
 
     @classmethod
     def of(cls, controllers: Sequence[Controller], known: Sequence[KnownSettings]) -> Self:
         """Return the stack of such controllers."""
-        return cls([each.design for each in controllers if isinstance(each, LeastJerk)])
+        return cls([each for each in controllers if isinstance(each, LeastJerk)])
 
     def update(self, measured: Measured) -> np.ndarray:
         """Return the requests of the coming period less the open loops."""
