@@ -34,7 +34,6 @@ Runs in turn with equal known settings share it.
 """
 
 
-
 @dataclass
 class Scorer:
     """Scores runs, those that a batch takes together."""

@@ -88,6 +88,7 @@ def test_a_number_that_the_controller_refuses_gives_none(walks):
         ('launch', {}),
         ('launch_hill', {'actuator.delay_s': 0.023}),
         ('launch_hot', {'sensors.engine_speed.noise_rad_s': 0.1}),
+        ('upshift_2_3', {}),
     ],
 )
 def test_whole_runs_are_those_step_by_step(scenario, changes):

@@ -122,6 +122,8 @@ WHOLE: list[tuple[str, dict, str, dict, str]] = [
     ('mpc_offset_free', {}, 'launch_hill', {}, 'detailed'),
     ('mpc_wear', {}, 'launch_hot', {'sensors.engine_speed.noise_rad_s': 0.1}, 'detailed'),
     ('pedal_mpc', {}, 'launch_gentle', {'pedal_position': 0.7}, 'detailed'),
+    ('mpc_wear', {}, 'upshift_2_3', {}, 'detailed'),
+    ('pedal_mpc', {}, 'upshift_light', {}, 'detailed'),
 ]
 
 
