@@ -21,10 +21,11 @@ def sampled_behind_delay(system: StateSpace, substeps: int) -> StateSpace:
     """
     periods, late = divmod(substeps, SUBSTEPS)
     held = _changed_within_period(system, late) if late else discretise_zoh(system, PERIOD_S)
-    return series(_delay_line(periods), held) if periods else held
+    return series(delay_line(periods), held) if periods else held
 
 
-def _delay_line(periods: int) -> StateSpace:
+def delay_line(periods: int) -> StateSpace:
+    """Return the delay of a sampled input by so many periods, which are its states."""
     inputs = np.eye(periods)
     shift = np.eye(periods, k=-1)
     return StateSpace(shift, inputs[:, :1], inputs[-1:], np.zeros((1, 1)), PERIOD_S)

@@ -14,12 +14,10 @@ from typing import Self
 import numpy as np
 import scipy
 
+from ddct_controllers.design.delayed_input import delay_line
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEP_S, SUBSTEPS
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.linear.sampling import hold_inputs
-
-_AT_ONCE = 1600
-"""Number of matrices that are solved together, so that they stay in the processor's cache."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +69,7 @@ class LoopStack:
         """Return continuous systems, sampled, behind a delay: `sampled_behind_delay`."""
         periods, late = divmod(substeps, SUBSTEPS)
         held = self._changed_within_period(late) if late else self._held(PERIOD_S)
-        return held.behind(_delay_line(periods)) if periods else held
+        return held.behind(delay_line(periods)) if periods else held
 
     def closed(self, gains: np.ndarray) -> np.ndarray:
         """
@@ -86,10 +84,15 @@ class LoopStack:
     def responses(self, omega: np.ndarray) -> np.ndarray:
         """Return the complex responses (R, m) of sampled systems at m frequencies in rad/s."""
         z = np.exp(1j * omega * PERIOD_S)
-        each = max(1, _AT_ONCE // len(z))
-        reduced = self._reduced()
-        found = [_responses(reduced, z, slice(i, i + each)) for i in range(0, len(self), each)]
-        return np.concatenate(found)
+        system = self._triangular()
+        total = np.repeat(system.d[:, np.newaxis].astype(complex), len(z), axis=1)
+        x = np.repeat(system.b.T[..., np.newaxis], len(z), axis=2)
+        for k in reversed(range(len(x))):
+            for later in range(k + 1, len(x)):
+                x[k] += system.a[:, k, later, np.newaxis] * x[later]
+            x[k] /= z - system.a[:, k, k, np.newaxis]
+            total += system.c[:, k, np.newaxis] * x[k]
+        return total
 
     def pointwise(self, omega: np.ndarray) -> np.ndarray:
         """Return the complex response (R,) of each sampled system at its own frequency, (R,)."""
@@ -113,56 +116,16 @@ class LoopStack:
         c = np.concatenate([self.d[:, np.newaxis], self.c], axis=1)
         return LoopStack(a, b, c, np.zeros(count))
 
-    def _reduced(self) -> 'LoopStack':
+    def _triangular(self) -> 'LoopStack':
         """
-        Return the systems in coordinates in which their matrices are upper Hessenberg.
+        Return the systems in coordinates in which their matrices are upper triangular, complex.
 
         Balanced first: a rotation would mix the rounding of large states into small ones.
         """
-        if self.a.shape[1] < 3:
-            return self
-        upper, b, c = np.empty_like(self.a), np.empty_like(self.b), np.empty_like(self.c)
-        for i, a in enumerate(self.a):
+        upper = self.a.astype(complex)
+        b, c = self.b.astype(complex), self.c.astype(complex)
+        for i, a in enumerate(self.a if self.b.size else ()):
             balanced, (scale, _) = scipy.linalg.matrix_balance(a, permute=False, separate=True)
-            upper[i], turned = scipy.linalg.hessenberg(balanced, calc_q=True, check_finite=False)
-            b[i], c[i] = (self.b[i] / scale) @ turned, (self.c[i] * scale) @ turned
+            upper[i], turned = scipy.linalg.schur(balanced, output='complex', check_finite=False)
+            b[i], c[i] = (self.b[i] / scale) @ turned.conj(), (self.c[i] * scale) @ turned
         return LoopStack(upper, b, c, self.d)
-
-
-def _delay_line(periods: int) -> StateSpace:
-    inputs = np.eye(periods)
-    shift = np.eye(periods, k=-1)
-    return StateSpace(shift, inputs[:, :1], inputs[-1:], np.zeros((1, 1)), PERIOD_S)
-
-
-def _responses(systems: LoopStack, z: np.ndarray, which: slice) -> np.ndarray:
-    """
-    Return c (z - H)^-1 b + d, (R, m), of some systems with upper Hessenberg matrices H.
-
-    Gaussian elimination of all (z - H) at once, with the larger of two rows as pivot.
-    """
-    upper, b = systems.a[which], systems.b[which]
-    states, shape = b.shape[1], (len(b), len(z))
-    rows = -np.broadcast_to(upper.transpose(1, 2, 0)[..., np.newaxis], (states, states, *shape))
-    rows = rows.astype(complex)
-    rows[np.arange(states), np.arange(states)] += z
-    x = np.broadcast_to(b.T[..., np.newaxis], (states, *shape)).astype(complex)
-    for k in range(states - 1):
-        swap = _size(rows[k + 1, k]) > _size(rows[k, k])
-        pivot = np.where(swap, rows[k + 1, k:], rows[k, k:])
-        other = np.where(swap, rows[k, k:], rows[k + 1, k:])
-        of_pivot, of_other = np.where(swap, x[k + 1], x[k]), np.where(swap, x[k], x[k + 1])
-        factor = other[0] / pivot[0]
-        rows[k, k:], rows[k + 1, k:] = pivot, other - factor * pivot
-        x[k], x[k + 1] = of_pivot, of_other - factor * of_pivot
-    for k in reversed(range(states)):
-        for later in range(k + 1, states):
-            x[k] -= rows[k, later] * x[later]
-        x[k] /= rows[k, k]
-    outputs = systems.c[which].T[..., np.newaxis] * x
-    return outputs.sum(axis=0) + systems.d[which, np.newaxis]
-
-
-def _size(values: np.ndarray) -> np.ndarray:
-    """Return a magnitude of complex values that costs less than the absolute one."""
-    return np.abs(values.real) + np.abs(values.imag)

@@ -122,18 +122,16 @@ class CornerLoops:
     """The loops of a controller at the corners; what is not asked for is not computed."""
 
     def __init__(self, controller: StateSpace, corners: PlantCorners) -> None:
-        """Close the loops at three wear gains; `controller` is as `sampled_loop` accepts it."""
+        """Take the loops of a controller that `sampled_loop` accepts."""
         require_sampled(controller)
         self._corners = corners
         self._loops = corners.plants.behind(controller)
         self._responses = corners.responses * frequency_response(controller, corners.omega)
-        self._poles = np.linalg.eigvals(self._loops.closed(np.array(WEAR_GAINS)))
-        self._radius = np.abs(self._poles).max(axis=2)
 
     @cached_property
     def unstable(self) -> np.ndarray:
         """Whether each corner is unstable at some wear gain of the range, (corners,)."""
-        unstable = (self._radius >= 1.0).any(axis=1)
+        unstable = (np.abs(self._poles_at_ends) >= 1.0).any(axis=(1, 2))
         crossed = _crossings(self._responses) & ~unstable[:, np.newaxis]
         corners, first = np.nonzero(crossed)
         loops = self._loops.some(corners)
@@ -148,6 +146,18 @@ class CornerLoops:
         unstable[corners[(gains >= WEAR_GAINS[0]) & (gains <= WEAR_GAINS[-1])]] = True
         return unstable
 
+    @cached_property
+    def _poles_at_ends(self) -> np.ndarray:
+        """Closed-loop poles at the least and the greatest wear gain, (corners, 2, n)."""
+        return np.linalg.eigvals(self._loops.closed(np.array(WEAR_RANGE)))
+
+    @cached_property
+    def _poles(self) -> np.ndarray:
+        """Closed-loop poles at the three wear gains, (corners, 3, n)."""
+        between = np.linalg.eigvals(self._loops.closed(np.array(WEAR_GAINS[1:-1])))
+        ends = self._poles_at_ends
+        return np.concatenate([ends[:, :1], between, ends[:, 1:]], axis=1)
+
     @property
     def sensitivity_peak(self) -> float | None:
         """Highest M_s of the corners and wear gains, None when a corner is unstable."""
@@ -157,7 +167,8 @@ class CornerLoops:
     def _worst(self) -> tuple[int, float, float | None]:
         """Index, wear gain and M_s of the worst corner."""
         if self.unstable.any():
-            index, wear = np.unravel_index(np.argmax(self._radius), self._radius.shape)
+            radius = np.abs(self._poles).max(axis=2)
+            index, wear = np.unravel_index(np.argmax(radius), radius.shape)
             return int(index), WEAR_GAINS[wear], None
         return self._highest_peak()
 
