@@ -220,7 +220,7 @@ class IntervalMap:
 def _product(matrix: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
     """Return a function that multiplies the matrix by a vector."""
     height = max(1, BLOCK // max(1, matrix.shape[1]))
-    blocks = [matrix[i : i + height].copy() for i in range(0, len(matrix), height)]
+    blocks = [matrix[i : i + height] for i in range(0, len(matrix), height)]
     if len(blocks) == 1:
         return blocks[0].dot
     return lambda v: np.concatenate([block.dot(v) for block in blocks])
