@@ -2,19 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """A batch of gear shifts gives the signals and results of each shift step by step."""
 
-from collections import Counter, defaultdict
+from collections import Counter
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
+from batch_runs import bits_of, simulated, some
 from shifts import SHIFTS
 
 from ddct_bringup.batch.batchable import why_not_batchable
-from ddct_bringup.batch.mixed_controllers import MixedControllers
-from ddct_bringup.batch.results import part_of_stack
 from ddct_bringup.batch.run_batch import run_batch
-from ddct_bringup.batch.simulate import loop_kind, simulate_batch
 from ddct_bringup.campaign.rows import scored_headless
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.verdict.limits import packaged_limits
@@ -26,10 +23,6 @@ from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSetting
 
 LIMITS = packaged_limits()
 CONTROLLERS = ('ls8', 'pi', 'ls3', 'hinf1', 'mpc1', 'mpc3', 'mpc_torsion', 'least_jerk')
-
-
-def some(random, low, high):
-    return float(random.uniform(low, high))
 
 
 def gearbox(random):
@@ -106,24 +99,6 @@ def runs():
     ]
 
 
-def simulated(runs):
-    """Return the signals of each run in a batch up to its end, None for those that are unsure."""
-    groups: Any = defaultdict(list)
-    signals: list[Any] = [None] * len(runs)
-    for place, (settings, _) in enumerate(runs):
-        groups[loop_kind(settings)].append(place)
-    for places in groups.values():
-        settings, controllers = zip(*[runs[place] for place in places], strict=True)
-        mixed = MixedControllers(controllers, [run.known for run in settings])
-        stack = simulate_batch(settings, mixed, mixed.preview_steps)
-        for index, place in enumerate(places):
-            if not stack.unsure[index]:
-                end = int(stack.last[index]) + 1
-                of_run = part_of_stack(stack.trajectory, index).signals
-                signals[place] = {name: values[:end] for name, values in of_run.items()}
-    return signals
-
-
 def assert_same(signals, run):
     """Check the signals of a run against those step by step."""
     for name, values in signals.items():
@@ -152,8 +127,10 @@ def test_every_shift_can_be_in_a_batch(runs):
 def test_signals_and_events_are_those_of_the_run_step_by_step(runs):
     ends: Counter[bool] = Counter()
     tie_ups = 0
-    for (settings, controller), signals in zip(runs, simulated(runs), strict=True):
+    for place, signals in simulated(runs):
+        settings, controller = runs[place]
         assert signals is not None
+        controller.reset()
         run = run_headless(settings, controller)
         assert len(signals['slip_speed']) == run.steps + 1
         assert_same(signals, run)
@@ -177,17 +154,6 @@ def test_results_are_those_of_the_run_step_by_step(runs):
                 assert found == pytest.approx(value, rel=1e-9, abs=1e-12), name
         for limit, other in zip(ours.limits, expected.limits, strict=True):
             assert limit == replace(other, value=limit.value)
-
-
-def bits_of(runs):
-    """Return the bits of the signals of each run, and its events."""
-    return [
-        {
-            name: values.tolist() if name.endswith('events') else values.tobytes()
-            for name, values in each.items()
-        }
-        for each in simulated(runs)
-    ]
 
 
 @pytest.mark.parametrize('handover', HANDOVERS)

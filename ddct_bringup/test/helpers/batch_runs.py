@@ -6,7 +6,7 @@ from collections import defaultdict
 
 import numpy as np
 
-from ddct_bringup.batch.batchable import kind_of
+from ddct_bringup.batch.mixed_controllers import MixedControllers
 from ddct_bringup.batch.results import part_of_stack
 from ddct_bringup.batch.simulate import loop_kind, simulate_batch
 from ddct_controllers.registry import make_controller
@@ -80,13 +80,12 @@ def short_run(seed):
 def simulated(runs):
     """Yield the place of each run with its signals in a batch up to its end, or None if unsure."""
     groups = defaultdict(list)
-    for place, (settings, controller) in enumerate(runs):
-        kind = kind_of(controller)
-        groups[loop_kind(settings), kind, kind.key(controller)].append(place)
-    for (_, kind, _), places in groups.items():
+    for place, (settings, _) in enumerate(runs):
+        groups[loop_kind(settings)].append(place)
+    for places in groups.values():
         settings, controllers = zip(*[runs[place] for place in places], strict=True)
-        stack = kind.of(controllers, [run.known for run in settings])
-        found = simulate_batch(settings, stack)
+        mixed = MixedControllers(controllers, [run.known for run in settings])
+        found = simulate_batch(settings, mixed, mixed.preview_steps)
         for index, place in enumerate(places):
             end = int(found.last[index]) + 1
             signals = part_of_stack(found.trajectory, index).signals
