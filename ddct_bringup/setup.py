@@ -65,6 +65,7 @@ setup(
         f'ddct_controllers=={VERSION}',
         'setuptools',
         'bokeh',
+        'daqp',
         'jinja2',
         'markupsafe',
         'matplotlib',
