@@ -7,6 +7,7 @@ Needs no ROS: the messages are built and serialised from their definitions.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -55,15 +56,14 @@ def write_trajectory(
             message = info(START_NS, run_info[node].items(), name=node)
             bag.write(run_info_topic(node).name, START_NS, encode(message))
         ticks = {
-            topic.name: _messages(
+            topic: _messages(
                 topic, stamps, [trajectory.signals[each.name] for each in topic.signals_in(run)]
             )
             for topic in topics
             if topic.every_tick
         }
         for stamp, *messages in zip(stamps.tolist(), *ticks.values(), strict=True):
-            for topic_name, cdr in zip(ticks, messages, strict=True):
-                bag.write(topic_name, stamp, cdr)
+            bag.write_tick(stamp, [*ticks], messages)
     return bag.path
 
 
@@ -74,7 +74,13 @@ def _messages(topic: Topic, stamps: np.ndarray, columns: Sequence[Any]) -> Itera
         for stamp, *values in zip(stamps.tolist(), *columns, strict=True):
             yield encode(write(stamp, *values))
         return
-    layout = NumberColumns(topic, [column[0] for column in columns])
+    layout = _layout(topic, tuple(np.shape(column)[1:] for column in columns))
     for first in range(0, len(stamps), _TOGETHER):
         part = slice(first, first + _TOGETHER)
         yield from layout.encode(stamps[part], [column[part] for column in columns])
+
+
+@lru_cache(maxsize=64)
+def _layout(topic: Topic, shapes: tuple[tuple[int, ...], ...]) -> NumberColumns:
+    """Return the layout of the messages of a topic, whose signals have values of these shapes."""
+    return NumberColumns(topic, [np.zeros(shape)[()] for shape in shapes])

@@ -86,13 +86,22 @@ class BagWriter:
         known = self._topics.get(topic)
         if known is None:
             raise DdctError(f'the bag was opened without a topic {topic}', place=self.path)
+        self.write_tick(stamp_ns, [known], [cdr])
+
+    def write_tick(self, stamp_ns: int, topics: Sequence[Topic], cdrs: Sequence[bytes]) -> None:
+        """
+        Append a serialised message of each of some topics of the bag, all stamped `stamp_ns`.
+
+        Raise DdctError for a write that fails.
+        """
         if self._file.closed:
             raise DdctError(f'{self.path}: the recording is already closed')
         self._first_ns = min(self._first_ns or stamp_ns, stamp_ns)
         self._last_ns = max(self._last_ns, stamp_ns)
-        self._counts[known] += 1
         try:
-            self._writer.add_message(self._ids[known], stamp_ns, cdr, stamp_ns)
+            for topic, cdr in zip(topics, cdrs, strict=True):
+                self._counts[topic] += 1
+                self._writer.add_message(self._ids[topic], stamp_ns, cdr, stamp_ns)
             self._file.flush()  # finished chunks survive a killed process
         except OSError as error:
             raise self._gave_up(error) from error

@@ -3,6 +3,7 @@
 """rosbag2's metadata of a bag: `metadata.yaml` and the `rosbag2` record inside the MCAP file."""
 
 from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -29,11 +30,15 @@ _FOREVER = {'sec': 9223372036, 'nsec': 854775807}
 
 def qos_of(topic: Topic) -> dict[str, Any]:
     """Return the QoS profile of a topic's publisher."""
+    return _qos(topic.latched)
+
+
+def _qos(latched: bool) -> dict[str, Any]:
     return {
         'history': 'keep_last',
-        'depth': 1 if topic.latched else 10,
+        'depth': 1 if latched else 10,
         'reliability': 'reliable',
-        'durability': 'transient_local' if topic.latched else 'volatile',
+        'durability': 'transient_local' if latched else 'volatile',
         'deadline': _FOREVER,
         'lifespan': _FOREVER,
         'liveliness': 'automatic',
@@ -45,7 +50,12 @@ def qos_of(topic: Topic) -> dict[str, Any]:
 def channel_metadata(topic: Topic) -> dict[str, str]:
     """Return the metadata of a topic's channel."""
     type_hash = load_definition(topic.type).type_hash
-    return {'offered_qos_profiles': _dump([qos_of(topic)]), 'topic_type_hash': type_hash}
+    return {'offered_qos_profiles': _qos_text(topic.latched), 'topic_type_hash': type_hash}
+
+
+@cache
+def _qos_text(latched: bool) -> str:
+    return _dump([_qos(latched)])
 
 
 def bag_information(
