@@ -13,7 +13,6 @@ from ddct_bringup.batch.friction_drivelines import FrictionDrivelines, RunEvents
 from ddct_bringup.batch.linear_drivelines import LinearDrivelines
 from ddct_bringup.batch.loads import Loads
 from ddct_bringup.batch.sensors import Sensors
-from ddct_bringup.batch.shift_drivelines import ShiftDrivelines
 from ddct_bringup.batch.sides import LinearSides, StickSlipSides
 from ddct_plant.base.timebase import STEPS_PER_S
 from ddct_plant.models.initial_state import InitialState
@@ -50,7 +49,7 @@ class Plants:
         actuators = [
             _actuators(runs, initial, side, steps) for side in range(len(initial[0].sides))
         ]
-        self._drivelines: ShiftDrivelines | FrictionDrivelines | LinearDrivelines
+        self._drivelines: FrictionDrivelines | LinearDrivelines
         self._sides: list[StickSlipSides | LinearSides]
         self._holding: np.ndarray | None = None
         self._ratios = (
@@ -59,8 +58,7 @@ class Plants:
             else None
         )
         if runs[0].stick_slip:
-            drivelines = ShiftDrivelines if runs[0].shift else FrictionDrivelines
-            self._drivelines = drivelines(scenarios, initial)
+            self._drivelines = FrictionDrivelines(scenarios, initial)
             self._sides = [
                 StickSlipSides(runs, *each) for each in zip(actuators, ROLES, strict=False)
             ]
