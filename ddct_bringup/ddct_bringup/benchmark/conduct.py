@@ -160,4 +160,4 @@ def read_judged_rows(folder: Path) -> JudgedRows:
 
 
 def _rows(folder: Path) -> CaseRows:
-    return CaseRows.of_table(read_table(folder, RecordedCampaign.read(folder)))
+    return CaseRows(read_table(folder, RecordedCampaign.read(folder)))

@@ -87,7 +87,7 @@ def release_rows(folder: Traversable | Path) -> ReleaseRows:
     """Return the rows of a release in a folder; raise DdctError where they cannot be read."""
     try:
         table = read_parquet(Path(str(folder / ROWS)))
-        known, rows = table.schema.metadata, CaseRows.of_table(table)
+        known, rows = table.schema.metadata, CaseRows(table)
         version, commit, code = (known[key].decode() for key in (_VERSION, _COMMIT, _CODE))
         cases = known[_CASES].decode()
         return ReleaseRows(rows, cases, CodeOrigin(version, commit, code))

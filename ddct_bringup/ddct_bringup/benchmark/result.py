@@ -6,6 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from functools import reduce
 
+import pyarrow as pa
+
 from ddct_bringup.benchmark.case_rows import CaseRows
 from ddct_bringup.benchmark.comparison import (
     figures_in,
@@ -141,7 +143,7 @@ def _development(rows: JudgedRows, release: ReleaseRows | None) -> CaseRows:
 def _together(found: Iterable[CaseRows | None]) -> CaseRows:
     """Return those rows of the same cases that there are; none for no rows."""
     there = [each for each in found if each is not None]
-    return reduce(CaseRows.beside, there) if there else CaseRows((), {})
+    return reduce(CaseRows.beside, there) if there else CaseRows(pa.table({}))
 
 
 def _board_rows(

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
 import pytest
 
 from ddct_bringup.benchmark.case_rows import CaseRows
@@ -42,15 +43,14 @@ def rows_of(cases: int = CASES, **controllers: dict[str, Any]) -> CaseRows:
         'wear_gain': np.linspace(0.7, 1.3, cases),
         **{each.key: 1.0 for each in FIGURES},
     }
-    names = tuple(controllers)
     columns = {}
     for name in plain:
-        given = [controllers[each].get(name, plain[name]) for each in names]
-        columns[name] = np.array(
+        given = [each.get(name, plain[name]) for each in controllers.values()]
+        columns[name] = np.concatenate(
             [np.broadcast_to(np.array(value, dtype=_kind(name)), cases) for value in given]
-        )
-    columns['controller'] = np.array([[name] * cases for name in names], dtype=object)
-    return CaseRows(names, columns)
+        ).tolist()
+    columns['controller'] = [name for name in controllers for _ in range(cases)]
+    return CaseRows(pa.table(columns))
 
 
 def _kind(name: str) -> Any:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
+import pyarrow as pa
 import pytest
 from verified import edit_manifest
 
@@ -84,7 +84,7 @@ def test_damaged_update_times_are_refused(tmp_path: Path, text: str) -> None:
 
 
 def test_rows_with_fewer_cases_than_their_specification_are_refused(tmp_path: Path) -> None:
-    columns = {'controller': np.array([['pi'] * 3], dtype=object)}
-    rows = ReleaseRows(CaseRows(('pi',), columns), Cases.packaged().digest, CodeOrigin.here())
+    table = pa.table({'controller': ['pi'] * 3})
+    rows = ReleaseRows(CaseRows(table), Cases.packaged().digest, CodeOrigin.here())
     with pytest.raises(DdctError, match=f'{ROWS} lacks cases: run make benchmark-rows'):
         rows.of(Cases.packaged())

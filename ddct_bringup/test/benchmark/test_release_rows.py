@@ -79,7 +79,7 @@ def test_the_release_has_every_packaged_controller_in_every_case(release: Releas
     assert list(release.rows.controllers) == own_controller_names()
     assert release.rows.cases == campaign.cases
     assert release.cases_digest == Cases.packaged().digest
-    assert {*columns_kept(campaign.spec)} == {*release.rows.columns}
+    assert {*columns_kept(campaign.spec)} == {*release.rows.table.column_names}
 
 
 def test_a_sample_of_the_rows_comes_out_again_within_the_bound(release: ReleaseRows) -> None:

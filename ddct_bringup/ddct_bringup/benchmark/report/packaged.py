@@ -51,8 +51,9 @@ def packaged_tables() -> Mapping[str, Table]:
         'all': Table('All development cases', _headers_of_all(), list(_overall(rows))),
         'dominance': _dominance(rows),
     }
-    for name in dict.fromkeys(rows.columns[SCENARIO][0].tolist()):
-        part = rows.of_cases(np.flatnonzero(rows.columns[SCENARIO][0] == name))
+    names = rows.of(rows.controllers[0])[SCENARIO]
+    for name in dict.fromkeys(names.tolist()):
+        part = rows.of_cases(np.flatnonzero(names == name))
         tables[name] = Table(
             f'Development cases of {name}',
             _STATES,
