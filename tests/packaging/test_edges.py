@@ -69,7 +69,6 @@ FILES = {
 """Modules that read or write files, with what they read or write."""
 VALUES_BY_KEY = {
     'ddct_bringup/campaign/run_set.py',
-    'ddct_bringup/campaign/scored.py',
     'ddct_bringup/run/run_base.py',
     'ddct_controllers/interface.py',
     'ddct_controllers/mpc/program/settings.py',
@@ -89,6 +88,10 @@ CALLERS = {
     'ddct_bringup/api/shell/tunings.py': 'arguments of Python programs',
     'ddct_bringup/api/tuning.py': 'arguments of Python programs',
     'ddct_bringup/programs/options/of_runs.py': 'arguments of argparse',
+    'ddct_bringup/batch/linear_drivelines.py': 'signals of many runs',
+    'ddct_bringup/batch/plants.py': 'signals of many runs',
+    'ddct_bringup/batch/recorder.py': 'signals of many runs',
+    'ddct_bringup/batch/simulate.py': 'signals of many runs',
     'ddct_bringup/bag/trajectory.py': 'signals: arrays of numbers, or tuples of texts and events',
     'ddct_plant/models/driveline.py': 'signals: numbers, or tuples of numbers and events',
     'ddct_plant/scenario/choices/scenarios.py': 'arguments of Python programs',

@@ -66,7 +66,7 @@ class ClosingStages:
         return self._added
 
     def _within_band(self, measured: Measured) -> np.ndarray:
-        reference = np.abs(measured.slip_reference[:, 0])
+        reference = np.abs(measured.present_reference)
         within: np.ndarray = np.maximum(np.abs(measured.slip_speed), reference) <= self._band
         return within
 

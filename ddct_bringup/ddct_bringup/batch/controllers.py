@@ -56,11 +56,14 @@ class Measured(NamedTuple):
 
     def of_rows(self, rows: 'slice | np.ndarray', preview_steps: int) -> Self:
         """Return the signals of some of the runs, whose controllers look ahead as many steps."""
-        ahead = slice(preview_steps + 1)
+        previews = (self.slip_reference, self.slip_reference_rate)
+        speeds, rates = (
+            np.ascontiguousarray(each[rows, : preview_steps + 1]) for each in previews
+        )
         return self._replace(
             **{name: getattr(self, name)[rows] for name in _OF_ONE_TIME},
-            slip_reference=np.ascontiguousarray(self.slip_reference[rows, ahead]),
-            slip_reference_rate=np.ascontiguousarray(self.slip_reference_rate[rows, ahead]),
+            slip_reference=speeds,
+            slip_reference_rate=rates,
         )
 
     @property
@@ -69,9 +72,19 @@ class Measured(NamedTuple):
         return self.engine_speed - self.shaft_speed
 
     @property
+    def present_reference(self) -> np.ndarray:
+        """Slip references of this step in rad/s, (R,)."""
+        return self.slip_reference.take(0, axis=1)
+
+    @property
+    def present_reference_rate(self) -> np.ndarray:
+        """Their rates in rad/s^2, (R,)."""
+        return self.slip_reference_rate.take(0, axis=1)
+
+    @property
     def slip_error_rpm(self) -> np.ndarray:
         """Slip references less slip speeds in rpm, (R,)."""
-        error: np.ndarray = rpm_from_rad_s(self.slip_reference[:, 0] - self.slip_speed)
+        error: np.ndarray = rpm_from_rad_s(self.present_reference - self.slip_speed)
         return error
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ddct_bringup.batch.engaged import Engaged
-from ddct_bringup.batch.motions import Forcing, Motions
+from ddct_bringup.batch.motions import Motions, StackedForcing
 from ddct_bringup.batch.stacks import stacked
 from ddct_bringup.batch.tie_ups import TieUps
 from ddct_plant.base.timebase import time_of_step
@@ -143,7 +143,7 @@ class FrictionDrivelines:
         kinetic = static = np.hstack([*kinetics, holding])
         if any(one is not other for one, other in zip(kinetics, statics, strict=True)):
             static = np.hstack([*statics, holding])
-        forcing = Forcing(self._inputs, kinetic, static)
+        forcing = StackedForcing(self._inputs, kinetic, static)
         before = now.state.copy(), now.signs.copy()
         now.advance(forcing, running)
         if self._tie_ups:

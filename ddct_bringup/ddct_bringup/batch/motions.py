@@ -23,7 +23,7 @@ Runs = slice | np.ndarray
 """Indices of some runs; a slice for all of them, so that nothing is copied."""
 
 
-class Forcing(NamedTuple):
+class StackedForcing(NamedTuple):
     """Values of a period as `HybridIntegrator.advance` takes them, of R runs."""
 
     inputs: np.ndarray
@@ -33,9 +33,9 @@ class Forcing(NamedTuple):
     static: np.ndarray
     """Static capacities, (R, c)."""
 
-    def of(self, runs: Runs) -> 'Forcing':
+    def of(self, runs: Runs) -> 'StackedForcing':
         """Return the values of some runs."""
-        return Forcing(*(each[runs] for each in self))
+        return StackedForcing(*(each[runs] for each in self))
 
     def in_force(self, signs: Signs, layout: IntervalLayout) -> np.ndarray:
         """Return the capacities in a mode, (R, c): static for elements that stick."""
@@ -70,7 +70,7 @@ class Motions:
         """Go on with other systems of the same elements, in the states (R, n)."""
         self.state, self._maps, self._integrators = state, Maps(integrators), integrators
 
-    def advance(self, forcing: Forcing, running: np.ndarray) -> None:
+    def advance(self, forcing: StackedForcing, running: np.ndarray) -> None:
         """Integrate one interval of the runs of a mask, (R,)."""
         self.events = {}
         sizes = self._maps.speeds(self.state)
@@ -84,7 +84,7 @@ class Motions:
         runs: Runs,
         at_once: IntervalMap,
         matrix: np.ndarray,
-        forcing: Forcing,
+        forcing: StackedForcing,
         sizes: np.ndarray,
     ) -> None:
         """Integrate runs in one mode, those with a possible event one by one."""
@@ -104,7 +104,7 @@ class Motions:
             self.state[run] = before[place]
             self._advance_one(run, signs, forcing)
 
-    def _advance_one(self, run: int, signs: Signs, forcing: Forcing) -> None:
+    def _advance_one(self, run: int, signs: Signs, forcing: StackedForcing) -> None:
         """Integrate one run from event to event."""
         inputs, kinetic, static = (each[run].tolist() for each in forcing)
         if kinetic == static:

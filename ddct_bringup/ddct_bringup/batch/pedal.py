@@ -85,7 +85,7 @@ class PedalControllers(StackedController):
         started = since >= 0
         left = np.maximum(self._longest - np.where(started, since, 0), self._shortest)
         horizons = np.where(started, left, self._shortest).astype(int)
-        return horizons, np.where(started, 0.0, measured.slip_reference[:, 0])
+        return horizons, np.where(started, 0.0, measured.present_reference)
 
     def _maps(self, horizons: np.ndarray) -> np.ndarray:
         """Return the map of each run's program, or one where all are the same."""

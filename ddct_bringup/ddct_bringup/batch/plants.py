@@ -12,7 +12,7 @@ from ddct_bringup.batch.engines import Engines
 from ddct_bringup.batch.friction_drivelines import FrictionDrivelines, RunEvents
 from ddct_bringup.batch.linear_drivelines import LinearDrivelines
 from ddct_bringup.batch.loads import Loads
-from ddct_bringup.batch.sensors import Sensors
+from ddct_bringup.batch.sensors import StackedSensors
 from ddct_bringup.batch.sides import LinearSides, StickSlipSides
 from ddct_plant.base.timebase import STEPS_PER_S
 from ddct_plant.models.initial_state import InitialState
@@ -43,7 +43,7 @@ class Plants:
         """Start in the initial states; profiles of engine and road extend to step `steps`."""
         scenarios = [run.scenario for run in runs]
         initial = [initial_state(run) for run in runs]
-        self._sensors = Sensors(runs, steps) if scenarios[0].sensors else None
+        self._sensors = StackedSensors(runs, steps) if scenarios[0].sensors else None
         self._engines = Engines(scenarios, steps)
         self._loads = Loads([make_load(run) for run in runs], steps)
         actuators = [

@@ -37,7 +37,7 @@ class SensedSpeeds(NamedTuple):
         return self.engine_speed - self.shaft_speed
 
 
-class Sensors:
+class StackedSensors:
     """The sensors of R runs, the counterpart of `DrivelineSensors` and `TorqueEstimate`."""
 
     def __init__(self, runs: Sequence[RunSettings], steps: int) -> None:

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from ddct_bringup.batch.motions import Forcing, Maps, Runs, by_mode
+from ddct_bringup.batch.motions import Maps, Runs, StackedForcing, by_mode
 from ddct_bringup.batch.stacks import product
 from ddct_plant.friction.engagements import OFF_GOING, ON_COMING, EngagedGears
 from ddct_plant.friction.tie_up import TieUp
@@ -42,7 +42,7 @@ class TieUps:
         self,
         state: np.ndarray,
         signs: np.ndarray,
-        forcing: Forcing,
+        forcing: StackedForcing,
         events: Mapping[int, list[Event]],
         running: np.ndarray,
     ) -> np.ndarray:
@@ -69,7 +69,7 @@ class TieUps:
             work[run] = self._alone(run, state, signs, forcing, events.get(run, []))
         return work
 
-    def _pressed(self, clutch: int, forcing: Forcing) -> np.ndarray:
+    def _pressed(self, clutch: int, forcing: StackedForcing) -> np.ndarray:
         """Return whether a clutch can carry torque in the period, (R,)."""
         pressed: np.ndarray = forcing.static[:, self._layout.capacities[clutch]].max(axis=1) > 0.0
         return pressed
@@ -103,7 +103,7 @@ class TieUps:
         run: int,
         state: np.ndarray,
         signs: np.ndarray,
-        forcing: Forcing,
+        forcing: StackedForcing,
         events: list[Event],
     ) -> float:
         before = Interval(state[run].tolist(), tuple(signs[run].tolist()), [], [], [])

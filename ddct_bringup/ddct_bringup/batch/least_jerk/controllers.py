@@ -10,7 +10,7 @@ import numpy as np
 from ddct_bringup.batch.controllers import Measured, StackedController
 from ddct_bringup.batch.least_jerk.actuators import ActuatorTorques, sizes
 from ddct_bringup.batch.least_jerk.estimates import CarriedTorques, DemandTrends, RigidSlips
-from ddct_bringup.batch.least_jerk.lock import CLOSED, SLIPPING, EngineGuards, LockPhases
+from ddct_bringup.batch.least_jerk.lock import CLOSED, SLIPPING, EngineGuards, StackedLockPhases
 from ddct_bringup.batch.least_jerk.plans import TorquePlans, time_left
 from ddct_bringup.batch.least_jerk.values import numbers
 from ddct_bringup.batch.observers import measured_speeds
@@ -51,7 +51,7 @@ class LeastJerkControllers(StackedController):
         self._actuator = ActuatorTorques([each.actuator for each in controllers], request)
         self._lag_s = self._actuator.ahead * PERIOD_S
         self._clutch, self._slip = CarriedTorques(designs), RigidSlips(designs)
-        self._guard, self._lock = EngineGuards(designs), LockPhases(designs)
+        self._guard, self._lock = EngineGuards(designs), StackedLockPhases(designs)
         self._plan = TorquePlans([each.limits for each in designs], request)
         self._demand = DemandTrends(len(designs))
         lags = np.array([each.actuator.lag_s for each in designs])
@@ -188,7 +188,7 @@ class LeastJerkControllers(StackedController):
         momentum = self._slip.inertia * self._slip.slip - PERIOD_S * passed
         smoothed = plan.smoothed + error - needed - rise * self._lag_s
         momentum = momentum - smoothing_s * smoothed
-        left_s = time_left(measured.slip_reference[:, 0], measured.slip_reference_rate[:, 0])
+        left_s = time_left(measured.present_reference, measured.present_reference_rate)
         if self._sticks:
             speeds = measured.engine_speed, measured.shaft_speed
             earliest_s = self._guard.earliest_s(speeds, demand.level, needed, plan.rate)

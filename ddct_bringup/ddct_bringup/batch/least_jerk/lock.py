@@ -24,7 +24,7 @@ SLIPPING, CONFIRMING, CLOSED = range(3)
 """Phases of the lock."""
 
 
-class LockPhases(Values):
+class StackedLockPhases(Values):
     """The counterpart of `LockPhases`."""
 
     def __init__(self, designs: Sequence[LeastJerkDesign]) -> None:
