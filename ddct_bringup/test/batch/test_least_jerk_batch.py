@@ -46,7 +46,7 @@ def test_torques_are_those_step_by_step_and_independent_of_other_runs(scenario, 
     assert len({kind_of(each).key(each) for each in controllers}) == 1
     together = stacked_torques(controllers, walks)
     phases = set()
-    for run in range(RUNS):
+    for run in range(0, RUNS, 4):
         expected, status = single_torques(controllers[run], walks, run)
         phases.add(status['phase'])
         largest = np.abs(expected).max()

@@ -15,6 +15,8 @@ from many_controllers import (
 )
 
 from ddct_bringup.batch.batchable import kind_of
+from ddct_bringup.batch.predictive import PredictiveControllers
+from ddct_bringup.batch.run_batch import run_batch
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.mpc.qp.solvers import Daqp
 from ddct_controllers.registry import make_controller
@@ -130,3 +132,17 @@ WHOLE: list[tuple[str, dict, str, dict, str]] = [
 @pytest.mark.parametrize(('name', 'options', 'scenario', 'changes', 'architecture'), WHOLE)
 def test_whole_runs_are_those_step_by_step(name, options, scenario, changes, architecture):
     assert_step_by_step(runs_of(name, options, scenario, changes, architecture), LIMITS)
+
+
+@pytest.mark.parametrize('scenario', ['thesis', 'launch'])
+def test_a_run_whose_program_has_no_solution_has_no_result(scenario, monkeypatch):
+    runs = runs_of('mpc3', LIMITED, scenario, {})
+    usual = run_batch(runs, LIMITS)
+    assert None not in usual
+    solved = PredictiveControllers._solved
+
+    def unsolved(self, run, *program):
+        return np.nan if run == 1 else solved(self, run, *program)
+
+    monkeypatch.setattr(PredictiveControllers, '_solved', unsolved)
+    assert run_batch(runs, LIMITS) == [usual[0], None, usual[2]]
