@@ -34,6 +34,10 @@ MOST_CARS = 250
 """Largest number of drivelines with plates that stick at once: each takes half a megabyte."""
 _FEWEST_SWITCHES = 5
 """Fewest saturation switches that trigger the rounding test."""
+_FEWEST_REVERSALS = 20
+"""Fewest reversals of the request that do so."""
+_REVERSED_SHARE = 0.1
+"""Smallest change in a period that counts as one, over the largest request."""
 _FEEDBACK_FACTOR = 1.0 + 2.0**-46
 """Factor on the feedback in the rounding test, several times the rounding error."""
 _SLIP_TOLERANCE = 1e-10
@@ -125,11 +129,14 @@ def _repeatable(runs: Sequence[Run], stack: Trajectory) -> np.ndarray:
     """
     Return for each run of a stack whether its rounding errors stay small, (R,).
 
-    Feedback that is too strong for its loop oscillates across the saturation at zero torque: each
-    pass may amplify a difference, until the metrics are those of another run.
+    Feedback that is too strong for its loop oscillates across the saturation at zero torque, or
+    between its own limits: each pass may amplify a difference, until the metrics are those of
+    another run.
     """
     cut = stack.torque_request < 0.0
-    suspects = np.flatnonzero(np.count_nonzero(np.diff(cut, axis=-1), axis=-1) >= _FEWEST_SWITCHES)
+    switches = np.count_nonzero(np.diff(cut, axis=-1), axis=-1)
+    reversals = _reversals(np.maximum(stack.torque_request, 0.0))
+    suspects = np.flatnonzero((switches >= _FEWEST_SWITCHES) | (reversals >= _FEWEST_REVERSALS))
     repeatable = np.ones(len(runs), dtype=bool)
     if len(suspects):
         suspected = [runs[index] for index in suspects.tolist()]
@@ -139,6 +146,17 @@ def _repeatable(runs: Sequence[Run], stack: Trajectory) -> np.ndarray:
         difference = np.max(np.abs(again - slip), axis=-1)
         repeatable[suspects] = difference <= _SLIP_TOLERANCE * np.max(np.abs(slip), axis=-1)
     return repeatable
+
+
+def _reversals(request: np.ndarray) -> np.ndarray:
+    """Return how often large changes of the requests, (R, N+1) in N m, change their sign, (R,)."""
+    change = np.diff(request, axis=-1)
+    large = np.abs(change) > _REVERSED_SHARE * np.max(request, axis=-1, keepdims=True)
+    steps = np.arange(change.shape[-1])
+    latest = np.maximum.accumulate(np.where(large, steps, 0), axis=-1)
+    rises = np.take_along_axis(large & (change > 0.0), latest, axis=-1)
+    known = np.logical_or.accumulate(large, axis=-1)
+    return np.count_nonzero((rises[:, 1:] != rises[:, :-1]) & known[:, :-1], axis=-1)
 
 
 def _usable(stack: Trajectory) -> np.ndarray:

@@ -17,6 +17,7 @@ from many_controllers import (
 from ddct_bringup.batch.batchable import kind_of
 from ddct_bringup.batch.predictive import PredictiveControllers
 from ddct_bringup.batch.run_batch import run_batch
+from ddct_bringup.run.headless import run_headless
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.mpc.qp.solvers import Daqp
 from ddct_controllers.registry import make_controller
@@ -146,3 +147,21 @@ def test_a_run_whose_program_has_no_solution_has_no_result(scenario, monkeypatch
 
     monkeypatch.setattr(PredictiveControllers, '_solved', unsolved)
     assert run_batch(runs, LIMITS) == [usual[0], None, usual[2]]
+
+
+def test_a_run_that_swings_between_its_limits_has_no_result_as_rounding_grows():
+    """Moves that cost nearly nothing over a short horizon make a limit cycle."""
+    options = {'prediction_steps': 13, 'move_weight': 0.06}
+    options |= {'highest_torque_n_m': 200.0, 'torque_rate_n_m_s': 3200.0}
+    settings = KnownSettings(load_scenario('launch_gentle'))
+    swinging = make_controller('mpc3', settings, options)
+    worn, moved = (RunSettings(settings, CaseSettings(wear_gain=w)) for w in (0.66, 0.66 + 7e-14))
+    slips = []
+    for each in (worn, moved):
+        swinging.reset()
+        slips.append(run_headless(each, swinging).slip_speed)
+    assert np.abs(slips[0] - slips[1]).max() > 1e-3, 'the run is not chaotic'
+    calm = make_controller('mpc3', settings)
+    none, counts = run_batch([(worn, swinging), (worn, calm)], LIMITS)
+    assert none is None
+    assert [counts] == run_batch([(worn, calm)], LIMITS)
