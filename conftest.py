@@ -17,7 +17,7 @@ import ddct_plant  # noqa: F401
 
 pytest_plugins = ['tiers']
 VARIABLE = 'DDCT_CACHE'
-"""That of `ddct_bringup.floor.cache`, whose import would delay the start of the workers."""
+"""That of `ddct_plant.files.cache_folder`."""
 _FOLDER = pytest.StashKey[Path]()
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # So it is in the background of a shell, and the programs that tests start would inherit it.

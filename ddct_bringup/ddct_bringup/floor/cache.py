@@ -5,7 +5,6 @@
 import dataclasses
 import hashlib
 import json
-import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,12 +20,13 @@ from ddct_bringup.floor.values import Floor
 from ddct_bringup.manifest.code import code_digest
 from ddct_bringup.manifest.manifest import file_digest
 from ddct_plant.base.errors import DdctError
+from ddct_plant.files.cache_folder import cache_folder
 from ddct_plant.files.json_records import read_json, to_json
 from ddct_plant.files.output_file import write_text
 from ddct_plant.scenario.settings import is_handover_file
 
-VARIABLE = 'DDCT_CACHE'
-"""Environment variable with the folder of the cache; empty for none."""
+_KIND = 'floors'
+"""Kind of the cache's folder."""
 
 
 @dataclass(frozen=True)
@@ -43,15 +43,6 @@ class _Content:
 
     values: KnownFloor
     sha256: str
-
-
-def cache_folder() -> Path | None:
-    """Return the folder of the cached floors, None where there is to be none."""
-    given = os.environ.get(VARIABLE)
-    if given is not None:
-        return Path(given) / 'floors' if given else None
-    home = os.environ.get('XDG_CACHE_HOME') or Path.home() / '.cache'
-    return Path(home) / 'ddct' / 'floors'
 
 
 def digest_of(case: Case, metric: str, attain: bool) -> str:
@@ -105,7 +96,7 @@ def cached(digest: str) -> KnownFloor | None:
     Of a file with other values than those that were stored there is none: a floor with another
     number would be no bound.
     """
-    folder = cache_folder()
+    folder = cache_folder(_KIND)
     if folder is None:
         return None
     try:
@@ -117,7 +108,7 @@ def cached(digest: str) -> KnownFloor | None:
 
 def store(digest: str, values: KnownFloor) -> None:
     """Store a floor under a digest; a folder that cannot be written is no error."""
-    folder = cache_folder()
+    folder = cache_folder(_KIND)
     if folder is None:
         return
     content = to_json(_Content(values, _digest_of_values(values)))

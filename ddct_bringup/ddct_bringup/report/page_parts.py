@@ -4,19 +4,54 @@
 
 import json
 import re
+from contextlib import suppress
 from functools import cache
+from importlib.metadata import version
 from importlib.resources import files
-from typing import Any
+from pathlib import Path
+from typing import Any, Self
 
-from jinja2 import Environment, FunctionLoader, StrictUndefined, Template
+from jinja2 import (
+    Environment,
+    FileSystemBytecodeCache,
+    FunctionLoader,
+    StrictUndefined,
+    Template,
+)
+from jinja2.bccache import Bucket
 from markupsafe import Markup, escape
 
+from ddct_bringup.manifest.code import code_digest
+from ddct_plant.files.cache_folder import cache_folder
 from ddct_plant.program.table import PURE
 
 MARKER = '<meta name="generator" content="ddct_bringup report">'
 """Tag that identifies a page written by this program, which it may replace."""
 _SYMBOL = re.compile(r'\b([A-Za-z]{1,2})_([A-Za-z0-9]+)\b')
 _RAISED = str.maketrans('0123456789.', '⁰¹²³⁴⁵⁶⁷⁸⁹·')
+
+
+class _KeptTemplates(FileSystemBytecodeCache):
+    """Compiled templates on the disk; a folder that cannot be used is no error."""
+
+    @classmethod
+    def of_this_code(cls) -> Self | None:
+        """Return those that the current code compiled, None where nothing is to be kept."""
+        folder = cache_folder('pages')
+        if folder is None:
+            return None
+        return cls(str(folder / f'{code_digest()}-{version("jinja2")}'))
+
+    def load_bytecode(self, bucket: Bucket) -> None:
+        """Read a compiled template."""
+        with suppress(OSError):
+            super().load_bytecode(bucket)
+
+    def dump_bytecode(self, bucket: Bucket) -> None:
+        """Keep a compiled template."""
+        with suppress(OSError):
+            Path(self.directory).mkdir(parents=True, exist_ok=True)
+            super().dump_bytecode(bucket)
 
 
 @cache
@@ -28,6 +63,7 @@ def page_template(room: str, name: str) -> Template:
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
+        bytecode_cache=_KeptTemplates.of_this_code(),
     )
     environment.filters |= {'symbols': symbols, 'unit': unit_text}
     return environment.get_template(name)

@@ -4,8 +4,9 @@
 
 import pytest
 
-from ddct_bringup.floor.cache import KnownFloor, cache_folder, cached, store
+from ddct_bringup.floor.cache import KnownFloor, cached, store
 from ddct_bringup.floor.values import Floor, Proof
+from ddct_plant.files.cache_folder import cache_folder
 
 NAME = 'abc'
 FLOOR = Floor('peak_jerk', 0.8, 1.0 / 3.0, None, Proof('ray', 1.0, 'all'), None)
@@ -24,7 +25,7 @@ def test_stored_values_come_back() -> None:
 )
 def test_a_file_with_other_values_counts_as_none(old: str, new: str) -> None:
     store(NAME, VALUES)
-    folder = cache_folder()
+    folder = cache_folder('floors')
     assert folder is not None
     file = folder / f'{NAME}.json'
     text = file.read_text(encoding='utf-8')
@@ -36,7 +37,7 @@ def test_a_file_with_other_values_counts_as_none(old: str, new: str) -> None:
 @pytest.mark.parametrize('text', ['[]', '{}', '{"values": {}}', 'null', '"values"'])
 def test_a_file_of_another_form_counts_as_none(text: str) -> None:
     store(NAME, VALUES)
-    folder = cache_folder()
+    folder = cache_folder('floors')
     assert folder is not None
     (folder / f'{NAME}.json').write_text(text, encoding='utf-8')
     assert cached(NAME) is None

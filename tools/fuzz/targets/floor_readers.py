@@ -7,12 +7,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from ddct_bringup.floor.cache import VARIABLE, KnownFloor, cache_folder, cached, store
+from ddct_bringup.floor.cache import KnownFloor, cached, store
 from ddct_bringup.floor.values import Floor, Proof
 from ddct_plant.base.errors import DdctError
+from ddct_plant.files.cache_folder import cache_folder
 from fuzz.reader import Reader
 
-_NAME = 'floor'
+_NAME, _VARIABLE = 'floor', 'DDCT_CACHE'
 _VALUES = KnownFloor(
     Floor('peak_jerk', 0.71, 1.25, None, Proof('bound', 1.25, 'runs'), None), limited=False
 )
@@ -39,13 +40,13 @@ def _kept(file: Path) -> object:
 @contextmanager
 def _cache(folder: Path) -> Iterator[Path]:
     """Use a cache in a folder for a while, and yield the folder of its files."""
-    before = os.environ.get(VARIABLE)
-    os.environ[VARIABLE] = str(folder)
+    before = os.environ.get(_VARIABLE)
+    os.environ[_VARIABLE] = str(folder)
     try:
-        place = cache_folder()
+        place = cache_folder('floors')
         assert place is not None
         yield place
     finally:
-        os.environ.pop(VARIABLE)
+        os.environ.pop(_VARIABLE)
         if before is not None:
-            os.environ[VARIABLE] = before
+            os.environ[_VARIABLE] = before
