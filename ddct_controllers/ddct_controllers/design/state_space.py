@@ -78,7 +78,7 @@ def frequency_response(system: StateSpace, omega: np.ndarray) -> np.ndarray:
     omega = np.asarray(omega, dtype=float)
     variable = 1j * omega if system.period_s is None else np.exp(1j * omega * system.period_s)
     resolvent = variable.reshape(-1, 1, 1) * np.eye(len(system.a)) - system.a
-    states = np.linalg.solve(resolvent, np.broadcast_to(system.b, (omega.size, *system.b.shape)))
+    states = np.linalg.solve(resolvent, system.b)
     return ((system.c @ states)[:, 0, 0] + system.d[0, 0]).reshape(omega.shape)
 
 

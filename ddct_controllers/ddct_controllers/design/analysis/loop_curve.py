@@ -69,17 +69,31 @@ class LoopCurve:
 
     def peak(self, measure: Measure) -> tuple[float, float]:
         """Return the maximum of `measure` of L over frequency, and its frequency in rad/s."""
-        measured = measure(self.values)
-        best = int(np.argmax(measured))
-        highest, where = float(measured[best]), float(self.omega[best])
-        inner = measured[1:-1]
-        local = (inner >= measured[:-2]) & (inner >= measured[2:])
-        first = np.flatnonzero(local & (inner >= _NEAR_THE_PEAK * highest))
-        ends = self.omega[first], self.omega[first + 2]
-        for omega, value in zip(*maxima(self._measured(measure), *ends), strict=True):
-            if value > highest:
-                highest, where = float(value), float(omega)
-        return highest, where
+        return self.peaks(measure)[0]
+
+    def peaks(self, *measures: Measure) -> list[tuple[float, float]]:
+        """Return the `peak` of each of some measures."""
+        found, brackets = [], []
+        for measure in measures:
+            measured = measure(self.values)
+            best = int(np.argmax(measured))
+            found.append((float(measured[best]), float(self.omega[best])))
+            inner = measured[1:-1]
+            local = (inner >= measured[:-2]) & (inner >= measured[2:])
+            brackets.append(np.flatnonzero(local & (inner >= _NEAR_THE_PEAK * measured[best])))
+        ends = np.cumsum([each.size for each in brackets])
+        first = np.concatenate(brackets)
+
+        def measured_at(omega: np.ndarray) -> np.ndarray:
+            parts = np.split(self._response(omega), ends[:-1], axis=-1)
+            return np.concatenate([of(part) for of, part in zip(measures, parts, strict=True)], -1)
+
+        refined = maxima(measured_at, self.omega[first], self.omega[first + 2])
+        for i, (omega, value) in enumerate(zip(*refined, strict=True)):
+            which = int(np.searchsorted(ends, i, side='right'))
+            if value > found[which][0]:
+                found[which] = float(value), float(omega)
+        return found
 
     def critical_gains(self) -> list[float]:
         """Return every factor that puts L through -1: -1/L where L is real and negative."""

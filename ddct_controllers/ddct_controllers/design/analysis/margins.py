@@ -62,6 +62,7 @@ def loop_margins(loop: ContinuousLoop | StateSpace) -> LoopMargins:
     crossovers = curve.crossings(lambda values: np.log(np.abs(values)))
     lags = [float(np.angle(-curve.at(omega))) for omega in crossovers]
     gains = curve.critical_gains()
+    (disk, _), (of_s, _), (of_t, _) = curve.peaks(_of_disk, sensitivity, complementary)
     return LoopMargins(
         stable=True,
         gain_margin_db=_decibel(min((gain for gain in gains if gain > 1.0), default=math.inf)),
@@ -71,12 +72,17 @@ def loop_margins(loop: ContinuousLoop | StateSpace) -> LoopMargins:
             (lag % math.tau / omega for lag, omega in zip(lags, crossovers, strict=True)),
             default=math.inf,
         ),
-        disk_margin=2.0 / curve.peak(lambda values: np.abs((1.0 - values) / (1.0 + values)))[0],
-        sensitivity_peak=curve.peak(sensitivity)[0],
-        complementary_peak=curve.peak(complementary)[0],
+        disk_margin=2.0 / disk,
+        sensitivity_peak=of_s,
+        complementary_peak=of_t,
         crossover_rad_s=max(crossovers, default=0.0),
         bandwidth_rad_s=_bandwidth_rad_s(curve),
     )
+
+
+def _of_disk(values: np.ndarray) -> np.ndarray:
+    """Return |S - T| of values of L, elementwise."""
+    return np.abs((1.0 - values) / (1.0 + values))
 
 
 def _bandwidth_rad_s(curve: LoopCurve) -> float:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 Function = Callable[[np.ndarray], np.ndarray]
-"""Real function, elementwise, (k,) to (k,)."""
+"""Real function of places in k intervals, elementwise, (..., k) to (..., k)."""
 _MOST_STEPS = 60
 _RELATIVE = 1e-12
 """Relative change of a zero below which it is found."""
@@ -51,7 +51,7 @@ def maxima(function: Function, low: np.ndarray, high: np.ndarray) -> tuple[np.nd
     places, values, every = low, function(low), np.arange(low.size)
     while np.any(high - low > _NARROW * np.abs(low)):
         points = np.linspace(low, high, _PARTS + 1)
-        found = function(points.ravel()).reshape(points.shape)
+        found = function(points)
         best = np.argmax(found, axis=0)
         places, values = points[best, every], found[best, every]
         low = points[np.maximum(best - 1, 0), every]

@@ -38,8 +38,8 @@ def test_the_maximum_is_found_in_each_interval():
     centres = np.array([0.5, 3.0, 40.0])
 
     def resonances(x: np.ndarray) -> np.ndarray:
-        distance = (x[:, np.newaxis] - centres) / (1e-3 * centres)
-        return (1.0 / (1.0 + distance**2)).max(axis=1)
+        distance = (x[..., np.newaxis] - centres) / (1e-3 * centres)
+        return (1.0 / (1.0 + distance**2)).max(axis=-1)
 
     places, values = maxima(resonances, 0.99 * centres, 1.02 * centres)
     np.testing.assert_allclose(places, centres, rtol=1e-7)
