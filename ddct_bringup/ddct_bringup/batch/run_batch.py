@@ -26,6 +26,7 @@ from ddct_bringup.scores.validity import are_signals
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.interface import Controller
 from ddct_plant.base.errors import DdctError
+from ddct_plant.scenario.rules.shift import gears_of
 from ddct_plant.scenario.settings import RunSettings
 
 MOST_RUNS = 1000
@@ -83,12 +84,18 @@ def _parts(runs: Sequence[Run], group: Sequence[int]) -> Iterator[list[int]]:
     for index in group:
         settings = runs[index][0]
         if settings.stick_slip:  # such cars have a map of each of their modes
-            cars.add(settings.scenario.driveline)
+            cars.add(_car(settings))
         if len(part) == MOST_RUNS or len(cars) > MOST_CARS:
             yield part
-            part, cars = [], {settings.scenario.driveline}
+            part, cars = [], {_car(settings)}
         part.append(index)
     yield part
+
+
+def _car(settings: RunSettings) -> Hashable:
+    """Return the driveline of a run, in a shift with both gears."""
+    scenario = settings.scenario
+    return gears_of(scenario) if settings.shift else scenario.driveline
 
 
 def _results(runs: Sequence[Run], limits: Limits) -> list[ScoredRun | None]:
