@@ -17,6 +17,7 @@ from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 
+from bench.batch import BATCH
 from bench.commands import GRAPH, beside
 from bench.headless import HEADLESS
 from bench.predictive import PREDICTIVE
@@ -55,7 +56,7 @@ def main() -> None:
 
 @contextmanager
 def _comparisons(base: str | None) -> Iterator[list[Comparison]]:
-    peers = [*GRAPH, *HEADLESS, *PREDICTIVE]
+    peers = [*GRAPH, *HEADLESS, *BATCH, *PREDICTIVE]
     if not base:
         yield peers
         return
