@@ -82,7 +82,8 @@ def _computed(case: Case, metric: str, begin: Trajectory | None, attain: bool) -
     if bound.kind == RAY:
         return floor_without_run(case, metric, certificate)
     replays = Replays(None, None)
-    if attain and bound.engine_price <= _PRICED:
+    # Nothing is below a least of zero, and its runs part again.
+    if attain and bound.least and bound.engine_price <= _PRICED:
         replays = replays_of(case, objective, signals, bound, begin)
     best, last, least = replays.best, replays.last, bound.least
     if best is not None and least is not None and best.value < least:
@@ -96,9 +97,13 @@ def _computed(case: Case, metric: str, begin: Trajectory | None, attain: bool) -
         certificate,
         abs(best.value - best.predicted) if best else None,
     )
-    limited = not case.limited and (
-        bound.engine_price > _PRICED
-        or (last is not None and not gives_demand(last, case.start.step))
+    limited = (
+        bool(bound.least)
+        and not case.limited
+        and (
+            bound.engine_price > _PRICED
+            or (last is not None and not gives_demand(last, case.start.step))
+        )
     )
     return ComputedFloor(floor, limited, last)
 

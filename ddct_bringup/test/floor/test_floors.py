@@ -98,6 +98,12 @@ def test_no_metric_of_a_run_is_below_its_floor(scenario, controller):
         assert over.value >= over.floor.least, metric
 
 
+def test_no_run_near_a_least_of_zero_is_searched_for(monkeypatch):
+    monkeypatch.setattr(computed_floor, 'replays_of', None)
+    floor = floor_of(settings_of(), OF_STICK_SLIP, 1.0)
+    assert (floor.least, floor.attained, floor.gap) == (0.0, None, None)
+
+
 def test_the_values_are_those_of_scores():
     settings = settings_of()
     run = run_headless(settings, 'ls8')

@@ -168,9 +168,9 @@ def _no_floor(header: str, row: Sequence[str]) -> str:
     *_, least, attained, _, _ = row
     if least == UNDEFINED:
         return 'no torque request locks the plates at that time'
-    if attained == UNDEFINED:
-        return 'no run with that lock was found'
-    return 'the least is 0'
+    if least == '0':
+        return 'the least is 0'
+    return 'no run with that lock was found'
 
 
 def _no_ratio(header: str, row: Sequence[str]) -> str:
