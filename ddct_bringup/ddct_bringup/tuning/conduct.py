@@ -37,6 +37,8 @@ from ddct_plant.program.command_line import complain
 from ddct_plant.program.progress import Progress
 
 PROGRAM = 'ddct tune'
+LEAST_TOGETHER = 24
+"""Fewest cases of a part whose runs are computed together: a batch of few takes nearly as long."""
 _HOPELESS = 2 * BATCH
 """Number of trials after which a tuning ends if every run so far is invalid."""
 _NO_TIMES: Mapping[int, Mapping[str, float | None]] = {}
@@ -183,7 +185,7 @@ def computed_batch(
         Trial(number, values, further=loop).checked(spec, len(cases))
         for (number, values), loop in zip(suggested.items(), loops, strict=True)
     ]
-    for part in parts_of(cases):
+    for part in parts_of(cases, LEAST_TOGETHER if computed.together else 1):
         going = [each for each in trials if each.state == FEASIBLE or _is_present(tuning, each)]
         rows = computed.rows([(each.values, case) for each in going for case in part])
         for place, each in enumerate(going):

@@ -37,8 +37,9 @@ SAME = ('front.json', TRIALS, RUNS, 'best.yaml', 'held_out/results.parquet')
 
 
 @pytest.fixture(autouse=True)
-def no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+def no_pictures_and_small_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     leave_out_pictures(monkeypatch)
+    monkeypatch.setattr(conduct, 'LEAST_TOGETHER', 1)  # so that trials end early
 
 
 def bytes_of(folder: Path) -> list[bytes]:
@@ -163,6 +164,18 @@ def test_a_trial_that_another_betters_whatever_comes_ends_after_the_first_part()
     infeasible = Trial(91, {}, rows, state=INFEASIBLE)
     _, free = computed_batch(tuned, alone, asked, [infeasible], lambda trial: trial)
     assert len(free.rows) == len(tuned.cases)
+
+
+def test_a_part_has_many_runs_where_a_batch_computes_them(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(conduct, 'LEAST_TOGETHER', 3)
+    tuned = tuning(constraints={'engaged': {'at_least': 1.0}})  # 5 cases: 1, 2 and 5 else
+    slow = {1: {'proportional_gain': 0.05, 'integral_gain': 0.01}}
+    alone = TrialRuns.by(tuned, ThisProcess())
+    assert alone.together
+    (ended,) = computed_batch(tuned, alone, slow, [], lambda trial: trial)
+    assert (ended.state, len(ended.rows)) == (INFEASIBLE, 5)
 
 
 def test_only_a_trial_that_keeps_all_else_is_timed_and_a_long_time_makes_it_infeasible() -> None:

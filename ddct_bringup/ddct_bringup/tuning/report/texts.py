@@ -18,7 +18,7 @@ RULES = {
     'objective and betters in one.',
     'best': 'The trial of the front that is nearest to the best value of every objective, each '
     'counted from 0 to 1 over the front. The files of the others are in front/.',
-    'ended early': 'After a quarter and half of the cases a trial ends if it breaks a constraint '
+    'ended early': 'After a part of the cases a trial ends if it breaks a constraint '
     'or another trial betters it in every objective, whatever its other runs come to. So no trial '
     'of the front is lost.',
     'importance': 'How much the parameter decides the objective, among all parameters: how far '

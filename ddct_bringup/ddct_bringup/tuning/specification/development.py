@@ -127,7 +127,12 @@ class Development:
         return Campaign(spec_of(content, folder))
 
 
-def parts_of(cases: Sequence[int]) -> list[Sequence[int]]:
-    """Return the parts of the cases, one after the other; none is empty."""
-    ends = sorted({max(1, round(share * len(cases))) for share in _SHARES})
-    return [cases[first:last] for first, last in zip([0, *ends], ends, strict=False)]
+def parts_of(cases: Sequence[int], least: int = 1) -> list[Sequence[int]]:
+    """Return the parts of the cases in order; all but the last have at least `least` cases."""
+    ends = [0]
+    for share in _SHARES:
+        end = max(1, round(share * len(cases)))
+        if end == len(cases) or end - ends[-1] >= least:
+            ends.append(end)
+    pairs = zip(ends, ends[1:], strict=False)
+    return [cases[first:last] for first, last in pairs if first < last]
