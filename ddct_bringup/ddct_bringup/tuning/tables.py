@@ -13,6 +13,7 @@ from ddct_bringup.campaign.columns import parquet_bytes, schema_of
 from ddct_bringup.campaign.conduct import RESUME, SHARDS
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.tuning.specification.spec import TuningSpec
+from ddct_bringup.tuning.study import ANEW
 from ddct_bringup.tuning.trial import Trial
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import write_bytes
@@ -21,8 +22,6 @@ NUMBER, TRIAL = 'number', 'trial'
 """Column of the number of a trial among the trials, and before the columns of its runs."""
 RUNS, TRIALS = 'runs.parquet', 'trials.parquet'
 """Files with the rows of all runs, and with a row for each trial."""
-ANEW = 'start the tuning anew'
-"""What to do where the record of a tuning cannot be read."""
 
 
 def all_runs(trials: Sequence[Trial], campaign: CampaignSpec) -> pa.Table:

@@ -106,6 +106,8 @@ def _journal(spec: TuningSpec, trials: Sequence[Trial]) -> bytes:
 
 
 def _trials(file: Path) -> object:
+    if find_spec('optuna') is None:
+        return None
     return [
         (each.values, each.state, each.reason, each.further) for each in read_trials(file.parent)
     ]
