@@ -4,8 +4,8 @@
 
 import math
 import time
-from concurrent.futures import CancelledError
-from functools import partial
+from collections.abc import Sequence
+from concurrent.futures import CancelledError, Future
 from typing import Any
 
 from ddct_bringup.many_runs.local_workers import Ended, Submit, timed
@@ -53,18 +53,29 @@ class DaskWorkers:
 
     def begin(self, work: Work[Any, Any]) -> Submit:
         """Return the function that hands over blocks; that of a failed worker goes to another."""
-        return partial(self._client.get_executor(pure=False).submit, timed, work)
+        executor = self._client.get_executor(pure=False)
+
+        def submit(items: Sequence[Any]) -> 'Future[tuple[Any, float]]':
+            future = executor.submit(timed, work, items)
+            future.add_done_callback(self._heard_of)
+            return future
+
+        return submit
+
+    def _heard_of(self, _: object) -> None:
+        """Note that a worker has ended a block, with a result or by its death."""
+        self._lost_since = None
 
     def alone(self) -> 'DaskWorkers':
         """Return the same workers: a cluster starts another one for each that ends."""
         return self
 
     def ended(self, error: BaseException) -> Ended | None:
-        """Return how a worker has ended with the error of a future; None for another error."""
-        from distributed.scheduler import KilledWorker
+        """
+        Return how a block was lost with the error of a future; None for another error.
 
-        if isinstance(error, KilledWorker):
-            return Ended('its process ended on several workers of the cluster', by_itself=True)
+        A block that ends several workers is an error: each computes others beside it.
+        """
         if isinstance(error, CancelledError):  # as where the connection was lost
             return Ended('', by_itself=False)
         return None
