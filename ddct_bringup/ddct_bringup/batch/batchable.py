@@ -4,13 +4,13 @@
 
 import dataclasses
 
-from ddct_bringup.batch.controllers import StackedController
-from ddct_bringup.batch.least_jerk.controllers import LeastJerkControllers
-from ddct_bringup.batch.linear_controllers import LinearControllers
-from ddct_bringup.batch.pedal import PedalControllers
-from ddct_bringup.batch.predictive import PredictiveControllers
+from ddct_bringup.batch.controllers.interface import StackedController
+from ddct_bringup.batch.controllers.least_jerk.controllers import LeastJerkControllers
+from ddct_bringup.batch.controllers.linear import LinearControllers
+from ddct_bringup.batch.controllers.pedal import PedalControllers
+from ddct_bringup.batch.controllers.predictive import PredictiveControllers
+from ddct_bringup.batch.handovers.choice import why_no_handover
 from ddct_bringup.batch.references import why_no_reference
-from ddct_bringup.batch.stacked_handovers import why_no_handover
 from ddct_controllers.interface import Controller
 from ddct_plant.base.options import key_of
 from ddct_plant.scenario.scenario import Scenario

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ddct_bringup.batch.controllers import Measured
+from ddct_bringup.batch.controllers.interface import Measured
 from ddct_plant.base.timebase import PERIOD_S, steps_in
 from ddct_plant.scenario.scenario import Scenario
 

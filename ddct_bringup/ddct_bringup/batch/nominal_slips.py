@@ -7,9 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ddct_bringup.batch.loads import Loads
 from ddct_bringup.batch.open_loops import known_load, static_torques
-from ddct_bringup.batch.plants import Plants
+from ddct_bringup.batch.plant.plants import Loads, Plants
 from ddct_plant.scenario.settings import KnownSettings
 from ddct_reference.factory import nominal_settings
 

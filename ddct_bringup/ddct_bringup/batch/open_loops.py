@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ddct_bringup.batch.controllers import Measured
+from ddct_bringup.batch.controllers.interface import Measured
 from ddct_bringup.batch.stacks import Filters, stacked
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.parameters import DrivelineParameters

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.batch.friction_drivelines import RunEvents
+from ddct_bringup.batch.plant.friction_drivelines import RunEvents
 from ddct_plant.signals.topics import all_signals
 
 _SIGNALS = (

@@ -18,7 +18,7 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.batch.batchable import kind_of
-from ddct_bringup.batch.mixed_controllers import MixedControllers
+from ddct_bringup.batch.controllers.mixed import MixedControllers
 from ddct_bringup.batch.results import part_of_stack, stacked_results, until
 from ddct_bringup.batch.simulate import Stack, loop_kind, simulate_batch
 from ddct_bringup.scores.scored_run import ScoredRun

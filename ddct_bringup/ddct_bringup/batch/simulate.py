@@ -9,13 +9,13 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.batch.architectures import Architectures
-from ddct_bringup.batch.controllers import Feedback, Measured
+from ddct_bringup.batch.controllers.interface import Feedback, Measured
+from ddct_bringup.batch.handovers.choice import handover_kind, make_handovers
 from ddct_bringup.batch.open_loops import open_loop_kind
-from ddct_bringup.batch.plants import Plants, plant_kind
+from ddct_bringup.batch.plant.plants import Plants, plant_kind
 from ddct_bringup.batch.recorder import Recorder
 from ddct_bringup.batch.references import References, reference_kind
 from ddct_bringup.batch.shift_references import ShiftReferences
-from ddct_bringup.batch.stacked_handovers import handover_kind, make_handovers
 from ddct_controllers.handover.interface import HandoverMeasurement
 from ddct_plant.plant import Observation, PlantReply, Tick
 from ddct_plant.scenario.settings import RunSettings

@@ -7,7 +7,7 @@ import pytest
 from many_controllers import assert_step_by_step, known, single_torques, stacked_torques
 
 from ddct_bringup.batch.batchable import kind_of
-from ddct_bringup.batch.controllers import Measured
+from ddct_bringup.batch.controllers.interface import Measured
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.registry import make_controller
 from ddct_plant.scenario.file import load_scenario

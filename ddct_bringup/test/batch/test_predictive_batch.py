@@ -15,7 +15,7 @@ from many_controllers import (
 )
 
 from ddct_bringup.batch.batchable import kind_of
-from ddct_bringup.batch.predictive import PredictiveControllers
+from ddct_bringup.batch.controllers.predictive import PredictiveControllers
 from ddct_bringup.batch.run_batch import run_batch
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.verdict.limits import packaged_limits

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from ddct_bringup.batch.batchable import why_not_batchable
-from ddct_bringup.batch.linear_controllers import LinearControllers
+from ddct_bringup.batch.controllers.linear import LinearControllers
 from ddct_bringup.batch.run_batch import run_batch
 from ddct_bringup.batch.simulate import simulate_batch
 from ddct_bringup.campaign.rows import scored_headless

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from shifts import SHIFTS
 
-from ddct_bringup.batch.stacked_handovers import make_handovers, why_no_handover
+from ddct_bringup.batch.handovers.choice import make_handovers, why_no_handover
 from ddct_controllers.handover.interface import Handover, HandoverCommand, HandoverMeasurement
 from ddct_controllers.handover.laws import HANDOVERS
 from ddct_controllers.linear import PiController

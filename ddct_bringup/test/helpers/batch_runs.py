@@ -6,7 +6,7 @@ from collections import defaultdict
 
 import numpy as np
 
-from ddct_bringup.batch.mixed_controllers import MixedControllers
+from ddct_bringup.batch.controllers.mixed import MixedControllers
 from ddct_bringup.batch.results import part_of_stack
 from ddct_bringup.batch.simulate import loop_kind, simulate_batch
 from ddct_controllers.registry import make_controller

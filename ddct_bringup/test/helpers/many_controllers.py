@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ddct_bringup.batch.batchable import kind_of, why_not_batchable
-from ddct_bringup.batch.controllers import Measured
+from ddct_bringup.batch.controllers.interface import Measured
 from ddct_bringup.batch.run_batch import run_batch
 from ddct_bringup.batch.simulate import simulate_batch
 from ddct_bringup.campaign.rows import scored_headless

@@ -17,7 +17,7 @@ from received import (
 )
 from refusals import refused
 
-from ddct_bringup.batch.linear_controllers import LinearControllers
+from ddct_bringup.batch.controllers.linear import LinearControllers
 from ddct_bringup.batch.simulate import simulate_batch
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.run_set import PlannedRow

@@ -7,7 +7,7 @@ from collections.abc import Hashable, Sequence
 import numpy as np
 
 from ddct_bringup.batch.batchable import kind_of
-from ddct_bringup.batch.controllers import Measured, StackedController
+from ddct_bringup.batch.controllers.interface import Measured, StackedController
 from ddct_controllers.interface import Controller
 from ddct_plant.scenario.settings import KnownSettings
 

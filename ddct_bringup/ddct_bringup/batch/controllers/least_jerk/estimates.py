@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ddct_bringup.batch.least_jerk.values import Values, numbers
+from ddct_bringup.batch.controllers.least_jerk.values import Values, numbers
 from ddct_controllers.least_jerk.demand_trend import (
     AFTER_DRIFT,
     AFTER_STEP,

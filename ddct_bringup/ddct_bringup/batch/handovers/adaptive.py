@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from ddct_bringup.batch.actuators import Actuators
-from ddct_bringup.batch.handovers import StackedHandover
-from ddct_bringup.batch.limited_engines import LimitedEngines
-from ddct_bringup.batch.on_coming_estimates import OnComingEstimates
+from ddct_bringup.batch.handovers.laws import StackedHandover
+from ddct_bringup.batch.handovers.on_coming_estimates import OnComingEstimates
+from ddct_bringup.batch.plant.actuators import Actuators
+from ddct_bringup.batch.plant.engines import LimitedEngines
 from ddct_controllers.handover.adaptive import RESERVE, RESERVE_FADES_S, SLIPS_RAD_S
 from ddct_controllers.handover.interface import HandoverCommand, HandoverMeasurement
 from ddct_controllers.handover.on_coming_estimate import OnComingModel

@@ -7,7 +7,7 @@ from typing import Self
 
 import numpy as np
 
-from ddct_bringup.batch.controllers import Measured, StackedController
+from ddct_bringup.batch.controllers.interface import Measured, StackedController
 from ddct_bringup.batch.stacks import Filters
 from ddct_controllers.interface import Controller, Measurement
 from ddct_controllers.linear import DiscreteFilter, LinearController, PiController

@@ -7,13 +7,22 @@ from typing import Any, Self
 
 import numpy as np
 
-from ddct_bringup.batch.controllers import Measured, StackedController
-from ddct_bringup.batch.least_jerk.actuators import ActuatorTorques, sizes
-from ddct_bringup.batch.least_jerk.estimates import CarriedTorques, DemandTrends, RigidSlips
-from ddct_bringup.batch.least_jerk.lock import CLOSED, SLIPPING, EngineGuards, StackedLockPhases
-from ddct_bringup.batch.least_jerk.plans import TorquePlans, time_left
-from ddct_bringup.batch.least_jerk.values import numbers
-from ddct_bringup.batch.observers import measured_speeds
+from ddct_bringup.batch.controllers.interface import Measured, StackedController
+from ddct_bringup.batch.controllers.least_jerk.actuators import ActuatorTorques, sizes
+from ddct_bringup.batch.controllers.least_jerk.estimates import (
+    CarriedTorques,
+    DemandTrends,
+    RigidSlips,
+)
+from ddct_bringup.batch.controllers.least_jerk.lock import (
+    CLOSED,
+    SLIPPING,
+    EngineGuards,
+    StackedLockPhases,
+)
+from ddct_bringup.batch.controllers.least_jerk.plans import TorquePlans, time_left
+from ddct_bringup.batch.controllers.least_jerk.values import numbers
+from ddct_bringup.batch.controllers.observers import measured_speeds
 from ddct_bringup.batch.open_loops import static_torques
 from ddct_controllers.interface import Controller
 from ddct_controllers.least_jerk.controller import (

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from ddct_bringup.batch.motions import Maps, Runs, StackedForcing, by_mode
+from ddct_bringup.batch.plant.motions import Maps, Runs, StackedForcing, by_mode
 from ddct_bringup.batch.stacks import product
 from ddct_plant.friction.engagements import OFF_GOING, ON_COMING, EngagedGears
 from ddct_plant.friction.tie_up import TieUp

@@ -7,21 +7,41 @@ from typing import Any
 
 import numpy as np
 
-from ddct_bringup.batch.actuators import Actuators
-from ddct_bringup.batch.engines import Engines
-from ddct_bringup.batch.friction_drivelines import FrictionDrivelines, RunEvents
-from ddct_bringup.batch.linear_drivelines import LinearDrivelines
-from ddct_bringup.batch.loads import Loads
-from ddct_bringup.batch.sensors import StackedSensors
-from ddct_bringup.batch.sides import LinearSides, StickSlipSides
+from ddct_bringup.batch.plant.actuators import Actuators
+from ddct_bringup.batch.plant.engines import Engines
+from ddct_bringup.batch.plant.friction_drivelines import FrictionDrivelines, RunEvents
+from ddct_bringup.batch.plant.linear_drivelines import LinearDrivelines
+from ddct_bringup.batch.plant.sensors import StackedSensors
+from ddct_bringup.batch.plant.sides import LinearSides, StickSlipSides
 from ddct_plant.base.timebase import STEPS_PER_S
 from ddct_plant.models.initial_state import InitialState
+from ddct_plant.models.load import RoadLoad, resisting_torque
 from ddct_plant.plant import Observation, PlantReply, Tick
 from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.plant import engagements, holding_torque, make_load
 from ddct_plant.scenario.rules.shift import gears_of
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.shift.roles import ROLES
+
+
+class Loads:
+    """Road loads of R cars, the counterpart of `RoadLoad`."""
+
+    def __init__(self, loads: Sequence[RoadLoad], steps: int) -> None:
+        """Extend the profiles of the roads to step `steps`."""
+        self.wheel_radius = np.array([load.wheel_radius for load in loads])
+        """Wheel radii r_w in m, (R,)."""
+        self._drag = np.array([load.drag for load in loads])
+        self._wind = np.array([load.wind for load in loads])
+        times = np.arange(steps + 1) / STEPS_PER_S
+        self._forces = np.stack([load.forces(times) for load in loads], axis=-1)
+
+    def torque(self, step: int, vehicle_speed: np.ndarray) -> np.ndarray:
+        """Return C_load in N m, (R,), at step `step` at speeds in m/s, (R,)."""
+        torque: np.ndarray = resisting_torque(
+            self._drag, self._wind, self._forces[step], self.wheel_radius, vehicle_speed
+        )
+        return torque
 
 
 def plant_kind(settings: RunSettings) -> Hashable:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ddct_bringup.batch.least_jerk.values import Values, numbers
+from ddct_bringup.batch.controllers.least_jerk.values import Values, numbers
 from ddct_controllers.least_jerk.design import LeastJerkDesign
 from ddct_controllers.least_jerk.engine_guard import LEAST_RATE_N_M_S, MOST_DIP_RAD_S
 from ddct_controllers.least_jerk.lock import (

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ddct_bringup.batch.controllers import Measured
+from ddct_bringup.batch.controllers.interface import Measured
 from ddct_bringup.batch.stacks import by_run, distinct, product, stacked
 from ddct_controllers.measurement import MOST
 from ddct_controllers.mpc.estimate.observer import Observer

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ddct_bringup.batch.least_jerk.values import Values, numbers
+from ddct_bringup.batch.controllers.least_jerk.values import Values, numbers
 from ddct_controllers.least_jerk.plan import LEVEL_S, SHORTEST_S, PlanLimits
 from ddct_controllers.least_jerk.torque_plan import (
     CATCH_UP,

@@ -4,8 +4,8 @@
 
 from collections.abc import Hashable, Mapping, Sequence
 
-from ddct_bringup.batch.adaptive_handovers import AdaptiveHandovers
-from ddct_bringup.batch.handovers import (
+from ddct_bringup.batch.handovers.adaptive import AdaptiveHandovers
+from ddct_bringup.batch.handovers.laws import (
     ModelHandovers,
     SlipHandovers,
     StackedHandover,

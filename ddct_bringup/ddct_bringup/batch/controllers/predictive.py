@@ -7,8 +7,8 @@ from typing import Any, Self
 
 import numpy as np
 
-from ddct_bringup.batch.controllers import Measured, StackedController
-from ddct_bringup.batch.observers import Observers, WearObservers
+from ddct_bringup.batch.controllers.interface import Measured, StackedController
+from ddct_bringup.batch.controllers.observers import Observers, WearObservers
 from ddct_bringup.batch.stacks import by_run, distinct, product
 from ddct_controllers.interface import Controller
 from ddct_controllers.mpc.controller import MpcController, references

@@ -7,9 +7,9 @@ from typing import Self
 
 import numpy as np
 
-from ddct_bringup.batch.controllers import Measured, StackedController
-from ddct_bringup.batch.observers import Observers
-from ddct_bringup.batch.predictive import NEAR
+from ddct_bringup.batch.controllers.interface import Measured, StackedController
+from ddct_bringup.batch.controllers.observers import Observers
+from ddct_bringup.batch.controllers.predictive import NEAR
 from ddct_bringup.batch.stacks import by_run, distinct, product
 from ddct_controllers.interface import Controller
 from ddct_controllers.state_of_art.pedal_mpc import PedalMpc
