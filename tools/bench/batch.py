@@ -9,7 +9,7 @@ import numpy as np
 
 from bench.headless import step_s
 from bench.ratios import Comparison, Cost
-from ddct_bringup.batch.mixed_controllers import MixedControllers
+from ddct_bringup.batch.controllers.mixed import MixedControllers
 from ddct_bringup.batch.simulate import simulate_batch
 from ddct_controllers.registry import make_controller
 from ddct_plant.scenario.file import load_scenario
