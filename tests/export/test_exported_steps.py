@@ -117,7 +117,7 @@ def test_steps_without_a_solution_follow_the_plan_as_the_original_does(tmp_path,
     settings = limited_settings(name, 1000, 40000)
     original: Any = make_controller(name, settings.known)
     export_controller(original, name, settings.known, tmp_path / 'c')
-    original._solver = Hasty(original.program.structure)
+    original.solver = Hasty(original.program.structure)
     in_c = never_changing_its_active_set(tmp_path / 'c')
     met: Counter[str] = Counter()
     for seed in range(EPISODES):
