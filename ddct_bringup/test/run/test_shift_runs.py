@@ -12,6 +12,7 @@ from samples import sampled
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.batch.batchable import why_not_batchable
+from ddct_bringup.batch.run_batch import run_batch
 from ddct_bringup.campaign.rows import scored_headless
 from ddct_bringup.run.execution import execute, simulate
 from ddct_bringup.run.headless import run_headless
@@ -151,11 +152,14 @@ def test_the_bag_of_a_shift_has_every_signal_setting_and_node(tmp_path: Path) ->
     assert counts['/clutch/handover_share'] == counts['/clutch/slip'] == 251
 
 
-def test_a_shift_is_simulated_step_by_step_in_a_campaign():
-    shift = settings()
-    assert why_not_batchable(shift, make_controller('pi', shift.known))
-    row = scored_headless(shift, 'pi', packaged_limits())
+def test_a_shift_in_a_campaign_is_valid_step_by_step_and_in_a_batch():
+    shift, limits = settings(), packaged_limits()
+    controller = make_controller('pi', shift.known)
+    assert not why_not_batchable(shift, controller)
+    row, (same,) = scored_headless(shift, 'pi', limits), run_batch([(shift, controller)], limits)
     assert row.valid
+    assert same.valid
+    assert (same.state, same.why) == (row.state, row.why)
 
 
 def test_an_unknown_handover_is_refused():
