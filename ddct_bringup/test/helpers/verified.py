@@ -29,14 +29,14 @@ from ddct_bringup.programs import bringup, campaign, compare, verify
 from ddct_plant.files.json_records import from_json
 
 SPEC = """\
-controllers: [ls8]
+controllers: [{controller}]
 scenario: thesis_sticking
 seed: 3
-grid: {wear_gain: [0.8, 1.0], duration_s: [0.7]}
+grid: {{wear_gain: [0.8, 1.0], duration_s: [0.7]}}
 random:
   samples: 1
   vary:
-    vehicle.mass_kg: {distribution: uniform, low: 1000, high: 2000}
+    vehicle.mass_kg: {{distribution: uniform, low: 1000, high: 2000}}
 """
 CONTROLLER = """\
 from ddct_bringup.api import Command, Controller
@@ -81,10 +81,11 @@ def make_bag(out: Path, *options: str) -> Path:
     return out
 
 
-def make_small_campaign(place: Path) -> Path:
+def make_small_campaign(place: Path, controller: str = 'ls8') -> Path:
     """Carry out a campaign of two rows, and return its folder."""
     place.mkdir(exist_ok=True)
-    (place / 'spec.yaml').write_text(SPEC, encoding='utf-8')
+    spec = SPEC.format(controller=controller)
+    (place / 'spec.yaml').write_text(spec, encoding='utf-8')
     out = place / 'campaign'
     assert campaign.main([str(place / 'spec.yaml'), '--out', str(out), '--workers', '1']) == 0
     return out

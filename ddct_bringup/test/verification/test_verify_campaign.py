@@ -49,7 +49,7 @@ def test_an_untouched_campaign_is_the_same_to_the_last_bit_wherever_it_is(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(folder, '_distributions', DRAWN)
-    whole = make_small_campaign(tmp_path / 'whole')
+    whole = make_small_campaign(tmp_path / 'whole', 'mpc4')  # in no batch: a shard for each row
     code, document, errors = verified(copied(whole, tmp_path / 'there'), capfd, '--workers', '1')
     assert (code, 'ddct verify' in errors) == (0, False)  # progress is no error
     names = [MANIFEST, ROWS, SHARDS, 'summary.json', 'report.html']
