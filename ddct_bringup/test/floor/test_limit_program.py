@@ -52,6 +52,13 @@ def test_standard_output_is_json_alone(capsys):
     assert json.loads(capsys.readouterr().out)['front'][0]['lock_time_s'] == 0.9
 
 
+def test_what_can_be_chosen_is_listed_and_nothing_computed(capsys):
+    assert main(['--list', '--scenario', 'launch', '--json', '-']) == 0
+    listed = capsys.readouterr().out
+    assert {'launch,', 'ls8,'} <= {*listed.split()}
+    assert '"front"' not in listed
+
+
 @pytest.mark.process
 def test_the_bytes_are_the_same_with_any_number_of_workers(tmp_path, monkeypatch):
     texts = []
