@@ -34,6 +34,22 @@ def test_a_jump_is_found_where_the_sign_changes():
     assert found == pytest.approx(np.sqrt(2.0), rel=1e-11)
 
 
+@pytest.mark.parametrize('scale', [1e-3, -1e-3, 1e3, -1e3])
+def test_a_smooth_zero_takes_few_values_whatever_their_sign_and_unit(scale):
+    """Ridders' method doubles the digits in a step; halving the interval takes 40 steps."""
+    asked = []
+
+    def smooth(x: np.ndarray) -> np.ndarray:
+        asked.append(x)
+        return scale * (np.exp(x) - 2.0)
+
+    low, high = np.array([0.1]), np.array([1.0])
+    at_low, at_high = smooth(low), smooth(high)
+    (found,) = zeros(smooth, low, high, at_low, at_high)
+    assert found == pytest.approx(np.log(2.0), rel=1e-12)
+    assert len(asked) <= 14
+
+
 def test_the_maximum_is_found_in_each_interval():
     centres = np.array([0.5, 3.0, 40.0])
 
