@@ -141,6 +141,20 @@ def test_a_worn_clutch_has_the_same_floor_as_its_requests_are_free(wear_gain):
     assert floor.gap < 5.0
 
 
+def test_after_a_replay_that_does_not_lock_as_the_floor_has_it_another_one_does(monkeypatch):
+    """Its slip closes faster at last."""
+    lock, locks = attained._locks, []
+
+    def noted(case, run):
+        locks.append(lock(case, run))
+        return locks[-1]
+
+    monkeypatch.setattr(attained, '_locks', noted)
+    floor = floor_of(settings_of(), 'weighted_acceleration', 0.6)
+    assert locks[:2] == [False, True]
+    assert floor.attained >= floor.least
+
+
 def test_after_two_replays_that_do_not_lock_as_the_floor_has_it_there_is_no_third(monkeypatch):
     replays = []
 
