@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """`limit` prints, writes and draws floors; what cannot be is one line."""
 
+import io
 import json
+import sys
 
 import pytest
 
@@ -57,6 +59,18 @@ def test_what_can_be_chosen_is_listed_and_nothing_computed(capsys):
     listed = capsys.readouterr().out
     assert {'launch,', 'ls8,'} <= {*listed.split()}
     assert '"front"' not in listed
+
+
+def test_a_narrow_terminal_shows_every_number_and_leaves_out_the_kind_of_proof(monkeypatch):
+    stream = io.StringIO()
+    monkeypatch.setattr(stream, 'isatty', lambda: True)
+    monkeypatch.setenv('COLUMNS', '50')
+    monkeypatch.setattr(sys, 'stdout', stream)
+    assert main([*LAUNCH, '--lock-times', '0.9']) == 0
+    shown = stream.getvalue()
+    assert 'not shown: proof; all with --json FILE' in shown
+    assert 'weak_duality' not in shown
+    assert all(name in shown for name in ('least', 'attained', 'gap %'))
 
 
 @pytest.mark.process
