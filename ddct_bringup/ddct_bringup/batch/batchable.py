@@ -7,7 +7,6 @@ import dataclasses
 from ddct_bringup.batch.controllers.interface import StackedController
 from ddct_bringup.batch.controllers.least_jerk.controllers import LeastJerkControllers
 from ddct_bringup.batch.controllers.linear import LinearControllers
-from ddct_bringup.batch.controllers.pedal import PedalControllers
 from ddct_bringup.batch.controllers.predictive import PredictiveControllers
 from ddct_bringup.batch.handovers.choice import why_no_handover
 from ddct_bringup.batch.references import why_no_reference
@@ -34,7 +33,6 @@ _UNSUPPORTED = [
 """Other scenario keys, with their defaults."""
 _KINDS: tuple[type[StackedController], ...] = (
     PredictiveControllers,
-    PedalControllers,
     LeastJerkControllers,
     LinearControllers,
 )

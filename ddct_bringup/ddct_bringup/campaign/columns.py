@@ -51,13 +51,11 @@ VECTORISED_RTOL = 1e-9
 VECTORISED_ATOL = {
     'slip_final_rpm': 1e-6,
     'lockup_slip_acceleration_rad_s2': 1e-7,
-    'engagement_time_s': 1e-7,
 }
 """
 The same in the metric's unit, of metrics that may be far more sensitive than their signals.
 
-1e-9 of 1000 rpm and of 100 rad/s^2, of values near zero, and 1e-5 of a period, where a slip is
-almost level when it crosses zero.
+1e-9 of 1000 rpm and of 100 rad/s^2, of values near zero.
 """
 
 

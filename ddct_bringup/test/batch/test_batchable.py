@@ -31,7 +31,7 @@ SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 PI = PiController(0.1, 0.1)
 MODEL = transmission_model(SETTINGS.scenario.controlled_driveline)
 SUPPORTED = (
-    *('mpc1', 'mpc_preview', 'mpc_offset_free', 'mpc_torsion', 'mpc_wear', 'pedal_mpc'),
+    *('mpc1', 'mpc_preview', 'mpc_offset_free', 'mpc_torsion', 'mpc_wear'),
     'least_jerk',
 )
 

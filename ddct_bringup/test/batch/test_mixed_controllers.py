@@ -15,7 +15,7 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 LIMITS = packaged_limits()
-NAMES = ('pi', 'ls8', 'mpc3', 'pi', 'mpc_preview', 'pedal_mpc', 'ls3', 'mpc3')
+NAMES = ('pi', 'ls8', 'mpc3', 'pi', 'mpc_preview', 'least_jerk', 'ls3', 'mpc3')
 
 
 @pytest.mark.parametrize('scenario', ['thesis', 'launch'])

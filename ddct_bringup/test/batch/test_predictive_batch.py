@@ -38,7 +38,6 @@ VARIANTS: tuple[tuple[str, dict], ...] = (
     ('mpc_torsion', {}),
     ('mpc_wear', {}),
     ('mpc_wear', LIMITED),
-    ('pedal_mpc', {}),
 )
 IDS = [f'{name}-{len(options)}' for name, options in VARIANTS]
 
@@ -124,9 +123,8 @@ WHOLE: list[tuple[str, dict, str, dict, str]] = [
     ('mpc_preview', LIMITED, 'launch', {}, 'detailed'),
     ('mpc_offset_free', {}, 'launch_hill', {}, 'detailed'),
     ('mpc_wear', {}, 'launch_hot', {'sensors.engine_speed.noise_rad_s': 0.1}, 'detailed'),
-    ('pedal_mpc', {}, 'launch_gentle', {'pedal_position': 0.7}, 'detailed'),
     ('mpc_wear', {}, 'upshift_2_3', {}, 'detailed'),
-    ('pedal_mpc', {}, 'upshift_light', {}, 'detailed'),
+    ('mpc3', {}, 'upshift_light', {}, 'detailed'),
 ]
 
 

@@ -52,40 +52,36 @@ class PedalMpc(Controller):
     def __init__(self, context: ControllerContext) -> None:
         """Condense the programs; raise ParameterError for a bad option."""
         settings = context.settings
-        model, self.observer = DisturbanceObserver().parts(settings)
-        self.control_start = None if settings.shift else settings.scenario.control_start_step
-        """Step at which control starts; None for that of the first update."""
-        self.longest = round(engagement_time_s(context) / PERIOD_S)
-        """First horizon in periods."""
-        self.shortest = self.longest // SHORTEST_SHARE
-        """Last horizon in periods."""
-        self.programs = engagement_programs(model, self.shortest, self.longest)
-        """Programs by their horizons in periods."""
+        model, self._observer = DisturbanceObserver().parts(settings)
+        self._control_start = None if settings.shift else settings.scenario.control_start_step
+        self._longest = round(engagement_time_s(context) / PERIOD_S)
+        self._shortest = self._longest // SHORTEST_SHARE
+        self._programs = engagement_programs(model, self._shortest, self._longest)
         self._unlimited = np.full(MOVES, np.inf)
         self.reset()
 
     def reset(self) -> None:
         """Clear the estimate, the last request and every warm start."""
-        self.observer.reset()
+        self._observer.reset()
         self._request: float | None = None
-        self._start_step = self.control_start
+        self._start_step = self._control_start
         self._fallbacks = 0
         self._solvers: dict[int, QpBackend] = {}
 
     def hold(self, measurement: Measurement) -> None:
         """Let the observer follow the plant under the open-loop torque alone."""
-        self.observer.correct(measured_speeds(measurement), measurement.load_torque)
+        self._observer.correct(measured_speeds(measurement), measurement.load_torque)
         self._advance(measurement, max(measurement.open_loop_torque, 0.0))
 
     def update(self, measurement: Measurement) -> Command:
         """Return the first move of the optimal request."""
-        state = self.observer.correct(measured_speeds(measurement), measurement.load_torque)
+        state = self._observer.correct(measured_speeds(measurement), measurement.load_torque)
         horizon, slip = self._horizon_and_slip(measurement)
         before = self._request
         if before is None:
             before = max(measurement.open_loop_torque, 0.0)
         known = (before, measurement.engine_torque, measurement.load_torque, slip)
-        solution = self.solve(horizon, np.concatenate((state, known)), before)
+        solution = self._solve(horizon, np.concatenate((state, known)), before)
         if solution.status == 'solved':
             request = max(before + float(solution.z[0]), 0.0)
         else:
@@ -102,9 +98,9 @@ class PedalMpc(Controller):
             ),
         )
 
-    def solve(self, horizon: int, known: np.ndarray, before: float) -> QpSolution:
+    def _solve(self, horizon: int, known: np.ndarray, before: float) -> QpSolution:
         """Return the moves over a horizon in periods, from v and the request before in N m."""
-        program = self.programs[horizon]
+        program = self._programs[horizon]
         if horizon not in self._solvers:
             self._solvers[horizon] = make_backend(DEFAULT_BACKEND, program.structure)
         lower = np.full(MOVES, -before)
@@ -116,12 +112,12 @@ class PedalMpc(Controller):
             self._start_step = measurement.step
         since_start = measurement.step - self._start_step
         if since_start < 0:
-            return self.shortest, measurement.slip_reference[0]
-        return max(self.longest - since_start, self.shortest), 0.0
+            return self._shortest, measurement.slip_reference[0]
+        return max(self._longest - since_start, self._shortest), 0.0
 
     def _advance(self, measurement: Measurement, request: float) -> None:
         self._request = request
-        self.observer.predict((request, measurement.engine_torque, measurement.load_torque))
+        self._observer.predict((request, measurement.engine_torque, measurement.load_torque))
 
 
 def engagement_time_s(context: ControllerContext) -> float:

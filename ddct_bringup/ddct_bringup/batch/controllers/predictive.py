@@ -19,7 +19,7 @@ from ddct_controllers.mpc.qp.backend import DEFAULT_BACKEND
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.scenario.settings import KnownSettings
 
-NEAR = 1e-9
+_NEAR = 1e-9
 """Distance of a row to its bound, relative above 1, from which on the solver decides."""
 _STACKS: dict[type, type[Observers] | type[WearObservers]] = {
     Observer: Observers,
@@ -130,8 +130,8 @@ class PredictiveControllers(StackedController):
         divisor = np.where(self._soft, gain[:, np.newaxis], 1.0)
         lower, upper = self._lower / divisor, self._upper / divisor
         with np.errstate(invalid='ignore'):  # a bound that is infinite has no distance
-            below = rows - lower > NEAR * np.maximum(np.abs(lower), 1.0)
-            above = upper - rows > NEAR * np.maximum(np.abs(upper), 1.0)
+            below = rows - lower > _NEAR * np.maximum(np.abs(lower), 1.0)
+            above = upper - rows > _NEAR * np.maximum(np.abs(upper), 1.0)
         within = (below | (lower == -np.inf)) & (above | (upper == np.inf))
         return within.all(axis=1) & reaches_level(last, *self._limits)
 
