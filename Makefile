@@ -94,7 +94,7 @@ test-nightly: fmu tune-extra .venv/.site .venv/.test
 	@$(SOURCED) DDCT_SCHEDULES=1000 $(BIN)/python -m pytest -n 2 \
 	    ddct_plant/test/ticks ddct_plant/test/fail_safe
 
-# Rows of all packaged controllers on the benchmark's development cases, kept with a release: a quarter of an hour.
+# Rows of all packaged controllers on the benchmark's development cases, kept with a release: a minute or two.
 # It goes on with what is in runs/benchmark_rows, unless the sources have changed since: then remove that first.
 benchmark-rows: setup
 	@$(SOURCED) $(BIN)/python -m ddct_bringup.benchmark.release
