@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import pyarrow.parquet as parquet
 import pytest
 from refusals import refused
 from support.complaints import assert_one_line
@@ -61,6 +62,8 @@ def test_a_worker_that_dies_and_ctrl_c_cost_a_campaign_only_time_and_dask_goes_o
         assert campaign.main([*arguments, '--resume', '--scheduler', address]) == 0
     monkeypatch.setattr(conduct, 'workers_of', lambda *_: ThisProcess())
     assert campaign.main([str(spec), '--out', str(whole)]) == 0
+    ours, expected = (parquet.read_table(each / RESULTS).to_pylist() for each in (out, whole))
+    assert ours == expected, 'rows'
     assert (out / RESULTS).read_bytes() == (whole / RESULTS).read_bytes()
 
 

@@ -25,7 +25,7 @@ from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.validity import are_signals
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.interface import Controller
-from ddct_plant.base.errors import DdctError
+from ddct_plant.base.errors import FOREIGN_FAILURES
 from ddct_plant.scenario.rules.shift import gears_of
 from ddct_plant.scenario.settings import RunSettings
 
@@ -106,7 +106,7 @@ def _results(runs: Sequence[Run], limits: Limits) -> list[ScoredRun | None]:
             for length in np.unique(stack.last[~stack.unsure]).tolist():
                 for index, result in _of_length(runs, stack, length, limits):
                     results[index] = result
-    except DdctError:
+    except FOREIGN_FAILURES:  # also of a user's controller, whose reason the run alone gives
         if len(runs) == 1:
             return [None]
         half = len(runs) // 2

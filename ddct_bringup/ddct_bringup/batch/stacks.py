@@ -54,8 +54,14 @@ def distinct(keys: Iterable[Hashable]) -> tuple[list[int], np.ndarray]:
 
 
 def by_run(matrices: Sequence[np.ndarray], places: np.ndarray) -> np.ndarray:
-    """Return the matrix (m, n) of all runs, or a stack (R, m, n) where they differ."""
-    return np.array(matrices[0]) if len(matrices) == 1 else np.stack(matrices)[places]
+    """
+    Return the matrix (m, n) of all runs, or a stack (R, m, n) where they differ.
+
+    Rows are contiguous: with another order of the numbers a product has another rounding.
+    """
+    if len(matrices) == 1:
+        return np.array(matrices[0], order='C')
+    return np.ascontiguousarray(np.stack(matrices)[places])
 
 
 def product(matrix: np.ndarray, rows: np.ndarray) -> np.ndarray:

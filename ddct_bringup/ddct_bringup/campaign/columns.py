@@ -129,7 +129,7 @@ def merge(
             for group in range(groups):
                 for first in range(0, len(files), at_once):
                     tables = [
-                        _rows_of(each, shards[each], groups, group)
+                        _rows_of(each, shards[each], groups, group, advice)
                         for each in files[first : first + at_once]
                     ]
                     writer.write_table(pa.concat_tables(tables))
@@ -143,16 +143,14 @@ def merge(
         raise DdctError(f'cannot be written ({why}); {advice}', place=target) from error
 
 
-def _rows_of(shard: Path, count: int, groups: int, group: int) -> pa.Table:
+def _rows_of(shard: Path, count: int, groups: int, group: int, advice: str) -> pa.Table:
     """Return a group of the rows of a shard; DdctError for one that has not `count` rows."""
     try:
         table = read_parquet(shard, count, group if groups > 1 else None)
         if len(table) * groups != count:
             raise pa.ArrowInvalid(f'it has {len(table)} rows in a group, not {count // groups}')
     except (OSError, pa.ArrowException) as error:
-        raise DdctError(
-            f'cannot be read ({error}): remove it, and go on with --resume', place=shard
-        ) from error
+        raise DdctError(f'cannot be read ({error}): remove it; {advice}', place=shard) from error
     return table
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from ddct_bringup.campaign.conduct import RESUME, SHARDS, begin_folder, require_going_on
+from ddct_bringup.campaign.conduct import SHARDS, begin_folder, require_going_on
 from ddct_bringup.manifest.begun import begun_manifest
 from ddct_bringup.manifest.file_states import altered_files, require_unaltered
 from ddct_bringup.manifest.inputs import InputFiles
@@ -121,7 +121,9 @@ class _Search:
             found += trials
             progress.update(len(found))
             if len(found) >= _HOPELESS and (why := why_all_invalid(found)):
-                raise DdctError(f'{why}: mend the controller, or its ranges; {RESUME}')
+                raise DdctError(
+                    f'{why}: mend the controller or its ranges, and start anew in another --out'
+                )
         return found
 
     def _recorded(self, batch: int, suggested: Mapping[int, Values]) -> list[Trial] | None:
@@ -132,11 +134,7 @@ class _Search:
         """
         trials = self.study.trials[batch * BATCH :][: len(suggested)]
         if any(dict(each.values) != suggested[each.number] for each in trials):
-            raise DdctError(
-                f'{self.out} has other trials than this search gives: it was altered, or '
-                'computed with another Optuna: choose another --out',
-                key='--out',
-            )
+            raise self._other_trials()
         file = batch_file(self.out, batch)
         name = file.relative_to(self.out).as_posix()
         if len(trials) < len(suggested) or name not in self.manifest.files:
@@ -145,7 +143,17 @@ class _Search:
             complain(PROGRAM, f'{file}: altered since it was computed: it is computed again')
             return None
         rows = rows_by_trial(file)
-        return [replace(each, rows=rows.get(each.number, NO_ROWS)) for each in trials]
+        trials = [replace(each, rows=rows.get(each.number, NO_ROWS)) for each in trials]
+        if not all(map(self.study.has, trials)):
+            raise self._other_trials()
+        return trials
+
+    def _other_trials(self) -> DdctError:
+        return DdctError(
+            f'{self.out} has other trials than this search gives: it was altered, or '
+            'computed with another Optuna: choose another --out',
+            key='--out',
+        )
 
     def _timed(self, trial: Trial) -> Trial:
         """Return a trial with its update time, where a constraint needs it."""

@@ -112,6 +112,12 @@ class TuningStudy:
                 with _quiet():
                     self.study.add_trial(self._finished(trial))
 
+    def has(self, trial: Trial) -> bool:
+        """Return whether the entry of a recorded trial is what its runs give."""
+        found, entry = self._finished(trial), self._trials[trial.number]
+        ours, recorded = ((each.state, each.values, each.constraints) for each in (found, entry))
+        return ours == recorded
+
     def front(self) -> list[int]:
         """
         Return the numbers of the trials on the front, by the first objective.

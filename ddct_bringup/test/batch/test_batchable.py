@@ -86,6 +86,22 @@ class Limited(PiController):
         return Command(min(super().update(measurement).clutch_torque, 50.0))
 
 
+class Preloaded(PiController):
+    def reset(self):
+        self._integral_rpm_s = -5000.0
+
+
+class Fading(Proportional):
+    def update(self, measurement):
+        share = 1.0 if measurement.step <= 100 else 0.5
+        return Command(share * super().update(measurement).clutch_torque)
+
+
+class Unprepared(PiController):
+    def __init__(self):
+        """Leave out what `PiController` does."""
+
+
 @pytest.mark.parametrize(
     ('controller', 'reason'),
     [
@@ -95,8 +111,15 @@ class Limited(PiController):
         (Saturated(), 'the controller does not do what its linear_model says'),
         (Limited(0.1, 0.1), 'the controller does not do what its linear_model says'),
         (Led(), 'the controller does not do what its linear_model says'),
+        (Preloaded(0.1, 0.1), 'the controller does not do what its linear_model says'),
+        (Fading(), 'the controller does not do what its linear_model says'),
         (Remembering(), 'the controller does more than reset while feedback is held off'),
         (Broken(), 'the controller failed when it was tried (ValueError: no)'),
+        (
+            Unprepared(),
+            "the controller failed when it was tried (AttributeError: 'Unprepared' object has no "
+            "attribute '_gains')",
+        ),
         *((make_controller(name, SETTINGS.known), '') for name in SUPPORTED),
         (
             make_controller('mpc3', SETTINGS.known, {'backend': 'osqp'}),

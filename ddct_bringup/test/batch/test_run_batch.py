@@ -13,6 +13,7 @@ from ddct_bringup.batch.batchable import why_not_batchable
 from ddct_bringup.batch.controllers.linear import LinearControllers
 from ddct_bringup.batch.run_batch import run_batch
 from ddct_bringup.batch.simulate import simulate_batch
+from ddct_bringup.batch.stacks import by_run, product
 from ddct_bringup.campaign.rows import scored_headless
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.verdict.limits import packaged_limits
@@ -28,6 +29,27 @@ from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSetting
 
 SHORT = {'duration_s': 1.2, 'control_start_s': 0.2, 'score_window_s': [0.2, 1.1]}
 LIMITS = packaged_limits()
+
+
+def test_the_order_of_the_numbers_of_a_model_in_memory_changes_no_bit():
+    random = np.random.default_rng(4)
+    a = 0.3 * random.normal(size=(4, 4))
+    b, c, d = random.normal(size=(4, 1)), random.normal(size=(1, 4)), np.ones((1, 1))
+    by_column = [np.asfortranarray(np.block([[a, b], [c, d]]))]
+    errors = random.normal(size=200)
+
+    def torques(matrices, places):
+        states = np.zeros((len(places), 5))
+        found = []
+        for error in errors:
+            states[:, -1] = error
+            following = product(by_run(matrices, np.array(places)), states)
+            states[:, :-1] = following[:, :-1]
+            found.append(following[0, -1])
+        return found
+
+    beside = [*by_column, np.block([[0.5 * a, b], [c, d]])]
+    assert torques(by_column, [0]) == torques(beside, [0, 1])
 
 
 def scenario(random, **changes):
