@@ -5,14 +5,13 @@
 import os
 import signal
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import pyarrow.parquet as parquet
 import pytest
 from refusals import refused
 from support.complaints import assert_one_line
+from support.dask_cluster import start_cluster
 from support.processes import Programs, children_of
 from support.short_campaign import RUNS, shards, wait_for_shards, write_specification
 
@@ -58,29 +57,13 @@ def test_a_worker_that_dies_and_ctrl_c_cost_a_campaign_only_time_and_dask_goes_o
 
     done = shards(out)
     assert done < RUNS, 'the cluster has nothing left to do'
-    with cluster() as address:
-        assert campaign.main([*arguments, '--resume', '--scheduler', address]) == 0
+    address, _ = start_cluster(programs, monkeypatch, workers=1)
+    assert campaign.main([*arguments, '--resume', '--scheduler', address]) == 0
     monkeypatch.setattr(conduct, 'workers_of', lambda *_: ThisProcess())
     assert campaign.main([str(spec), '--out', str(whole)]) == 0
     ours, expected = (parquet.read_table(each / RESULTS).to_pylist() for each in (out, whole))
     assert ours == expected, 'rows'
     assert (out / RESULTS).read_bytes() == (whole / RESULTS).read_bytes()
-
-
-@contextmanager
-def cluster() -> Iterator[str]:
-    """Yield the address of a Dask scheduler whose worker is a thread of this process."""
-    from distributed import LocalCluster
-
-    with LocalCluster(
-        n_workers=1,
-        threads_per_worker=1,
-        processes=False,
-        protocol='tcp',
-        host='127.0.0.1',
-        dashboard_address=None,
-    ) as made:
-        yield made.scheduler_address
 
 
 @pytest.mark.parametrize('address', ['tcp://127.0.0.1:9', 'no such place'])

@@ -3,11 +3,11 @@
 """A Dask cluster that loses a worker in the middle of a campaign."""
 
 import signal
-import socket
 import threading
 from pathlib import Path
 
 import pytest
+from support.dask_cluster import start_cluster
 from support.processes import Program, Programs
 from support.short_campaign import wait_for_shards, write_specification
 
@@ -17,20 +17,6 @@ from ddct_bringup.many_runs.local_workers import ThisProcess
 from ddct_bringup.programs import campaign
 
 
-def start_cluster(programs: Programs) -> tuple[str, list[Program]]:
-    """Start a Dask scheduler and two workers; return its address, and the workers."""
-    with socket.socket() as free:
-        free.bind(('127.0.0.1', 0))
-        port = free.getsockname()[1]
-    address = f'tcp://127.0.0.1:{port}'
-    place = ('--host', '127.0.0.1', '--no-dashboard')
-    programs.start_module('distributed.cli.dask_scheduler', *place, '--port', str(port))
-    worker = (address, *place, '--nthreads', '1', '--no-nanny')
-    return address, [
-        programs.start_module('distributed.cli.dask_worker', *worker) for _ in range(2)
-    ]
-
-
 def test_a_worker_of_a_cluster_that_dies_costs_a_campaign_only_time(
     tmp_path: Path,
     programs: Programs,
@@ -38,7 +24,7 @@ def test_a_worker_of_a_cluster_that_dies_costs_a_campaign_only_time(
 ) -> None:
     whole, out = tmp_path / 'whole', tmp_path / 'out'
     spec = write_specification(tmp_path)
-    address, workers = start_cluster(programs)
+    address, workers = start_cluster(programs, monkeypatch, workers=2)
     killer = threading.Thread(target=_kill_when, args=(workers[0], out, 1))
     killer.start()
     assert campaign.main([str(spec), '--out', str(out), '--scheduler', address]) == 0
