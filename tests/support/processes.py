@@ -204,6 +204,8 @@ def processes_left() -> dict[int, str]:
             if 'multiprocessing.resource_tracker' in command:
                 continue
             if 'multiprocessing.forkserver' in command:
+                if _parent_of(pid) == os.getpid():
+                    continue  # that of this process, also before its start has returned its id
                 command = f'{(folder / "comm").read_text().strip()}: {command}'
             elif _parent_of(pid) == server_pid():
                 continue  # the git that the server asks for the commit while it loads
