@@ -22,6 +22,9 @@ FOLLOWERS = [name for name in MODULES if name not in ('driveline', 'recorder')]
 DRIVELINE = MODULES['driveline']
 SHORT = {'duration': 0.1, 'require_recorder': False, 'answer_timeout_s': 600.0}
 
+LONG_S = 15.0
+"""Duration in s of a run that lasts several times as long as another one needs to start."""
+
 
 def test_a_driveline_that_is_started_again_on_the_same_nodes_says_that_they_have_run(
     programs: Programs,
@@ -58,7 +61,7 @@ def test_a_bringup_beside_another_in_one_domain_is_refused_and_the_first_goes_on
     programs: Programs, tmp_path: Path, layout: list[str]
 ) -> None:
     def start(out: str) -> list[str]:
-        options = ['--controller', 'ls8', '--duration', '2', *layout]
+        options = ['--controller', 'ls8', '--duration', f'{LONG_S:g}', *layout]
         return ['ddct_bringup.programs.bringup', *options, '--out', str(tmp_path / out)]
 
     first = programs.fork(*start('first'))
@@ -71,7 +74,7 @@ def test_a_bringup_beside_another_in_one_domain_is_refused_and_the_first_goes_on
     assert_one_line(second.errors(), 'ddct bringup', words)
     assert first.wait() == 0, first.errors()
     trajectory = read_bag(tmp_path / 'first' / 'ls8').trajectory
-    assert trajectory.sha256() == expected(plan(duration_s=2.0)).sha256()
+    assert trajectory.sha256() == expected(plan(duration_s=LONG_S)).sha256()
 
 
 def test_domains_and_clocks_are_kept_apart() -> None:
