@@ -12,11 +12,11 @@ from ddct_controllers.least_jerk.options import LeastJerkOptions
 from ddct_controllers.least_jerk.plan import PlanLimits
 from ddct_controllers.least_jerk.shaped_demand import shaping_steps, starts_locked
 from ddct_controllers.least_jerk.slip_estimate import RigidSlip, twist_of
+from ddct_controllers.least_jerk.torque_covariance import TorqueNoise
 from ddct_controllers.least_jerk.torque_estimate import (
     APPLIED_SHARE,
     APPLIED_SHARE_IN_SHIFTS,
     CarriedTorque,
-    TorqueNoise,
 )
 from ddct_plant.base.clutch_kinds import LINEAR
 from ddct_plant.base.options import with_values

@@ -9,16 +9,16 @@ from other_actuators import ACTUATORS
 from ddct_controllers.least_jerk.actuator_model import ActuatorTorque
 from ddct_controllers.least_jerk.demand_trend import LONGEST, DemandTrend
 from ddct_controllers.least_jerk.slip_estimate import RigidSlip
-from ddct_controllers.least_jerk.torque_estimate import (
+from ddct_controllers.least_jerk.torque_covariance import (
     AT_TORQUE_N_M,
     ENGINE_TORQUE_NOISE_N_M,
     INITIAL_GAIN,
     INITIAL_OFFSET_N_M,
     LEAST_TORQUE_N_M,
     SPEED_NOISE_RAD_S,
-    CarriedTorque,
     TorqueNoise,
 )
+from ddct_controllers.least_jerk.torque_estimate import CarriedTorque
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.actuator import Actuator
 from ddct_plant.models.parameters import DrivelineParameters

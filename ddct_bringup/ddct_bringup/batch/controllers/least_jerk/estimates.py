@@ -17,16 +17,8 @@ from ddct_controllers.least_jerk.demand_trend import (
 )
 from ddct_controllers.least_jerk.design import LeastJerkDesign
 from ddct_controllers.least_jerk.slip_estimate import TORQUE_RATE_SHARE
-from ddct_controllers.least_jerk.torque_estimate import (
-    AT_TORQUE_N_M,
-    ENGINE_TORQUE_NOISE_N_M,
-    HIGHEST_GAIN,
-    INITIAL_GAIN,
-    INITIAL_OFFSET_N_M,
-    LEAST_TORQUE_N_M,
-    LOWEST_GAIN,
-    SPEED_NOISE_RAD_S,
-)
+from ddct_controllers.least_jerk.torque_covariance import TorqueCovariance, TorqueNoise
+from ddct_controllers.least_jerk.torque_estimate import HIGHEST_GAIN, LOWEST_GAIN
 from ddct_plant.base.timebase import PERIOD_S
 
 
@@ -66,14 +58,13 @@ class CarriedTorques(Values):
         self._share = numbers(designs, 'applied_share')
         self._step = PERIOD_S / numbers(drivelines, 'engine_inertia')
         self._damping = numbers(drivelines, 'engine_damping')
-        self._gain_variance = numbers(options, 'gain_drift') ** 2
-        self._offset_drift = numbers(options, 'offset_drift_n_m')
+        self._noise = TorqueNoise(
+            numbers(options, 'gain_drift'), numbers(options, 'offset_drift_n_m')
+        )
         runs = len(designs)
         self.gain, self._applied_gain = np.ones((2, runs))
         self.offset, self._applied_offset, self._speed = np.zeros((3, runs))
-        self._ss = np.full(runs, SPEED_NOISE_RAD_S**2)
-        self._sg, self._sd, self._gd = np.zeros((3, runs))
-        self._gg, self._dd = np.full(runs, INITIAL_GAIN**2), np.full(runs, INITIAL_OFFSET_N_M**2)
+        self._covariance = TorqueCovariance()
 
     def carried(self, torque: np.ndarray) -> np.ndarray:
         """Return the torques in N m that the clutches carry for torques of the actuators."""
@@ -89,44 +80,32 @@ class CarriedTorques(Values):
 
     def follow(self, which: np.ndarray, speed: np.ndarray) -> None:
         """Take measured w_m in rad/s after a period that says nothing about these clutches."""
-        self.put(which, _speed=speed, _ss=SPEED_NOISE_RAD_S**2, _sg=0.0, _sd=0.0)
+        self.put(which, _speed=speed)
+        self._put_covariance(which, self._covariance.at_measured_speed())
 
     def update(
         self, which: np.ndarray, speed: np.ndarray, engine_torque: np.ndarray, torque: np.ndarray
     ) -> None:
         """Take w_m in rad/s after a period in which these clutches slipped; torques in N m."""
-        step = self._step
         driven = engine_torque - self._damping * self._speed - self.carried(torque)
-        predicted = self._speed + step * driven
-        # Prediction of the covariance: w_m depends on g by -step f, and on d by -step.
-        by_gain = step * torque
-        spread_g = self._sg - by_gain * self._gg - step * self._gd
-        spread_d = self._sd - by_gain * self._gd - step * self._dd
-        spread = self._ss - by_gain * (self._sg + spread_g) - step * (self._sd + spread_d)
-        spread = spread + (step * ENGINE_TORQUE_NOISE_N_M) ** 2
-        gain_spread = self._gg + np.where(torque > LEAST_TORQUE_N_M, self._gain_variance, 0.0)
-        offset_drift = self._offset_drift * torque / AT_TORQUE_N_M
-        offset_spread = self._dd + offset_drift * offset_drift
-        # Correction by the measured speed.
-        innovation = spread + SPEED_NOISE_RAD_S**2
-        k_s, k_g, k_d = spread / innovation, spread_g / innovation, spread_d / innovation
+        predicted = self._speed + self._step * driven
+        gains, covariance = self._covariance.after_period(self._step, torque, self._noise)
         error = speed - predicted
-        gain = np.clip(self.gain + k_g * error, LOWEST_GAIN, HIGHEST_GAIN)
-        offset = self.offset + k_d * error
+        gain = np.clip(self.gain + gains.gain * error, LOWEST_GAIN, HIGHEST_GAIN)
+        offset = self.offset + gains.offset * error
         self.put(
             which,
             gain=gain,
             offset=offset,
             _applied_gain=self._applied_gain + self._share * (gain - self._applied_gain),
             _applied_offset=self._applied_offset + self._share * (offset - self._applied_offset),
-            _speed=predicted + k_s * error,
-            _ss=spread - k_s * spread,
-            _sg=spread_g - k_s * spread_g,
-            _sd=spread_d - k_s * spread_d,
-            _gg=gain_spread - k_g * spread_g,
-            _gd=self._gd - k_g * spread_d,
-            _dd=offset_spread - k_d * spread_d,
+            _speed=predicted + gains.speed * error,
         )
+        self._put_covariance(which, covariance)
+
+    def _put_covariance(self, which: np.ndarray, covariance: TorqueCovariance) -> None:
+        pairs = zip(covariance, self._covariance, strict=True)
+        self._covariance = TorqueCovariance(*(np.where(which, *pair) for pair in pairs))
 
 
 class RigidSlips(Values):
