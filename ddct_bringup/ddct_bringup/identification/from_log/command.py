@@ -9,12 +9,9 @@ from pathlib import Path
 
 from ddct_bringup.bag.measured_keys import MeasuredKeys
 from ddct_bringup.identification.from_log.base_car import drag_of, radius_of, with_radius
-from ddct_bringup.identification.from_log.car_and_drive import (
-    LogDrive,
-    OutFolder,
-    base_of_car,
-    write_car_and_drive,
-)
+from ddct_bringup.identification.from_log.car_and_drive import OutFolder, write_car_and_drive
+from ddct_bringup.identification.from_log.car_of_log import base_of_car
+from ddct_bringup.identification.from_log.drive_of_log import LogDrive
 from ddct_bringup.identification.from_log.fit import fit_log
 from ddct_bringup.identification.from_log.log_fit_report import LogFitReport, content_of, print_fit
 from ddct_bringup.identification.from_log.prediction import predict
