@@ -22,11 +22,20 @@ class Places:
     """Place of a key that is missing, by its noun."""
 
     def with_set(self, set_keys: Iterable[str]) -> 'Places':
-        """Return the places with those of the keys of `--set`, which stand in no file."""
+        """
+        Return the places with those of the keys of `--set`, which stand in no file.
+
+        Sections that only `--set` gives have its place too.
+        """
         given = tuple(set_keys)
+        sections = (section for key in given for section in _sections_of(key))
         within = tuple(f'{key}{mark}' for key in given for mark in '.[')
         kept = {key: at for key, at in self.of_keys.items() if not key.startswith(within)}
-        of_keys = kept | dict.fromkeys(given, self.otherwise)
+        of_keys = {
+            **dict.fromkeys(sections, self.otherwise),
+            **kept,
+            **dict.fromkeys(given, self.otherwise),
+        }
         return Places(self.otherwise, of_keys, self.of_nouns)
 
     def within(self, section: str) -> 'Places':
@@ -50,6 +59,12 @@ class Places:
             at = entry_of(f'{error.key} {error}', self.of_keys)
             noun = owner_of(error.key) or ''
             raise error.at(at or self.of_nouns.get(noun, self.otherwise)) from error
+
+
+def _sections_of(key: str) -> list[str]:
+    """Return the sections around a dotted key."""
+    names = key.split('.')
+    return ['.'.join(names[:count]) for count in range(1, len(names))]
 
 
 def places_of(label: str, lines: Mapping[str, int]) -> Places:

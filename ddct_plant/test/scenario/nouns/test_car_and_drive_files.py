@@ -271,3 +271,8 @@ def test_keys_of_a_scenario_of_before_are_refused_with_the_nouns_that_they_moved
 
 def test_the_packaged_scenarios_are_made_of_packaged_parts() -> None:
     assert [name for name in scenario_names() if ScenarioFile.read(name).files] == []
+
+
+def test_an_unknown_section_of_an_override_is_placed_where_it_is_given() -> None:
+    with refused(ParameterError, 'sensors.engin_speed', 'scenario thesis'):
+        load_scenario('thesis', ['sensors.engin_speed.noise_rad_s=3'])
