@@ -88,7 +88,7 @@ QUANTITIES = (
         unit='us',
         form='.1f',
         meaning='largest delay of a step of the driveline after its due time',
-        nulls=(_NO_TIMING, Null('the run was in lock-step', lambda _engagement: True)),
+        nulls=(_NO_TIMING, Null('no step was timed, as in lock-step', lambda _engagement: True)),
         value=lambda engagement: (
             None if engagement.timing is None else engagement.timing.worst_lateness_us
         ),

@@ -117,7 +117,7 @@ _REALTIME: tuple[RunColumn, ...] = (
         '',
         lambda run: None if run.safe_state is None else run.safe_state or 'none',
         number=False,
-        undefined=lambda run: 'the run was in lock-step',
+        undefined=lambda run: 'the run was in lock-step' if run.valid else '',
     ),
 )
 """Columns of a table with at least one real-time run, before the state."""
