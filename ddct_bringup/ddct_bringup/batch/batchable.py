@@ -8,6 +8,7 @@ from ddct_bringup.batch.controllers.interface import StackedController
 from ddct_bringup.batch.controllers.least_jerk.controllers import LeastJerkControllers
 from ddct_bringup.batch.controllers.linear import LinearControllers
 from ddct_bringup.batch.controllers.predictive import PredictiveControllers
+from ddct_bringup.batch.controllers.trial import is_known_linear
 from ddct_bringup.batch.handovers.choice import why_no_handover
 from ddct_bringup.batch.references import why_no_reference
 from ddct_controllers.interface import Controller
@@ -43,13 +44,18 @@ def why_not_batchable(settings: RunSettings, controller: Controller) -> str:
     """
     Return in one line why a run cannot be computed in a batch, empty if it can.
 
-    The controller is not changed except for a reset.
+    One whose controller `needs_trial` can if `why_not_linear` has no reason either.
     """
     return (
         _why_not_scenario(settings.scenario)
         or _why_not_known(settings.known)
         or _why_not_controller(controller)
     )
+
+
+def needs_trial(controller: Controller) -> bool:
+    """Return whether only a trial says that a controller is what the batch takes it for."""
+    return kind_of(controller) is LinearControllers and not is_known_linear(controller)
 
 
 def kind_of(controller: Controller) -> type[StackedController]:

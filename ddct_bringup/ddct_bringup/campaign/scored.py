@@ -10,7 +10,8 @@ from itertools import chain
 import numpy as np
 
 from ddct_bringup.bag.run_facts import RunFacts
-from ddct_bringup.batch.batchable import why_not_batchable
+from ddct_bringup.batch.batchable import needs_trial, why_not_batchable
+from ddct_bringup.batch.controllers.trial import why_not_linear
 from ddct_bringup.batch.run_batch import run_batch
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.rows import SERIAL, VECTORISED, ScoredRow, scored_headless
@@ -25,13 +26,6 @@ from ddct_controllers.interface import Controller
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import FOREIGN_FAILURES
 from ddct_plant.scenario.settings import KnownSettings
-
-_Made = dict[int, tuple[KnownSettings, Controller]]
-"""
-The controller that was made last of each specification, with its known settings.
-
-Runs in turn with equal known settings share it.
-"""
 
 
 @dataclass
@@ -72,12 +66,7 @@ class Scorer:
 
     def _together(self, runs: Sequence[PlannedRow]) -> dict[int, ScoredRun]:
         """Return the scores of the runs that can be computed at once, by index."""
-        made: _Made = {}
-        suited = [
-            (run, controller)
-            for run in (runs if self.at_once else ())
-            if (controller := _batchable(run, made)) is not None
-        ]
+        suited = _suited(runs) if self.at_once else []
         results = run_batch(
             [(run.settings, controller) for run, controller in suited], self.limits
         )
@@ -90,23 +79,32 @@ class Scorer:
 
 def are_together(campaign: Campaign) -> bool:
     """Return whether a batch takes the first run of at least half of the controllers."""
-    first_runs = [campaign.planned(at, at + 1) for at in range(0, campaign.runs, campaign.cases)]
-    taken = [_batchable(run, {}) is not None for (run,) in first_runs]
-    return 2 * sum(taken) >= len(taken)
+    firsts = campaign.planned_at(range(0, campaign.runs, campaign.cases))
+    suited = _suited([run for run in firsts if isinstance(run, PlannedRow)])
+    return 2 * len(suited) >= len(campaign.controllers)
 
 
-def _batchable(run: PlannedRow | ImpossibleRow, made: _Made) -> Controller | None:
-    """Return the controller of a run that a batch takes, None of another run."""
-    if isinstance(run, ImpossibleRow) or run.controller.compiled:
-        return None
-    chosen, known = run.controller, run.settings.known
-    if id(chosen) not in made or made[id(chosen)][0] != known:
-        try:
-            made[id(chosen)] = known, make_controller(chosen, known)
-        except FOREIGN_FAILURES:
-            return None  # the run step by step gives the reason
-    controller = made[id(chosen)][1]
-    return None if why_not_batchable(run.settings, controller) else controller
+def _suited(runs: Sequence[PlannedRow]) -> list[tuple[PlannedRow, Controller]]:
+    """Return the runs that a batch takes, with their controllers."""
+    made: dict[int, tuple[KnownSettings, Controller]] = {}
+    found = []
+    for run in runs:
+        chosen, known = run.controller, run.settings.known
+        if chosen.compiled:
+            continue
+        if id(chosen) not in made or made[id(chosen)][0] != known:  # runs in turn share one
+            try:
+                made[id(chosen)] = known, make_controller(chosen, known)
+            except FOREIGN_FAILURES:
+                continue  # the run step by step gives the reason
+        controller = made[id(chosen)][1]
+        if not why_not_batchable(run.settings, controller):
+            found.append((run, controller))
+    foreign = {id(each): each for _, each in found if needs_trial(each)}
+    failed = {
+        key for key, why in zip(foreign, why_not_linear([*foreign.values()]), strict=True) if why
+    }
+    return [(run, controller) for run, controller in found if id(controller) not in failed]
 
 
 @dataclass(frozen=True)

@@ -3,12 +3,14 @@
 """Runs that can be computed in a batch, and the one-line reason for the others."""
 
 import dataclasses
+import os
 
 import numpy as np
 import pytest
 
 from ddct_bringup.batch import batchable
-from ddct_bringup.batch.batchable import SUPPORTED_KEYS, why_not_batchable
+from ddct_bringup.batch.batchable import SUPPORTED_KEYS, needs_trial, why_not_batchable
+from ddct_bringup.batch.controllers.trial import why_not_linear
 from ddct_bringup.batch.run_batch import run_batch
 from ddct_bringup.campaign.rows import scored_headless
 from ddct_bringup.verdict.limits import packaged_limits
@@ -97,11 +99,17 @@ class Fading(Proportional):
         return Command(share * super().update(measurement).clutch_torque)
 
 
+class Ending(Proportional):
+    def update(self, measurement):
+        os._exit(3)
+
+
 class Unprepared(PiController):
     def __init__(self):
         """Leave out what `PiController` does."""
 
 
+@pytest.mark.process
 @pytest.mark.parametrize(
     ('controller', 'reason'),
     [
@@ -115,6 +123,7 @@ class Unprepared(PiController):
         (Fading(), 'the controller does not do what its linear_model says'),
         (Remembering(), 'the controller does more than reset while feedback is held off'),
         (Broken(), 'the controller failed when it was tried (ValueError: no)'),
+        (Ending(), 'its process failed when the controller was tried: it ended with exit code 3'),
         (
             Unprepared(),
             "the controller failed when it was tried (AttributeError: 'Unprepared' object has no "
@@ -143,9 +152,18 @@ class Unprepared(PiController):
 )
 def test_a_controller_is_in_a_batch_if_its_kind_is_supported(controller, reason):
     found = why_not_batchable(SETTINGS, controller)
+    if not found and needs_trial(controller):
+        (found,) = why_not_linear([controller])
     assert found.startswith(reason)
     assert bool(found) == bool(reason)
     assert '\n' not in found
+
+
+@pytest.mark.process
+def test_a_controller_that_ends_its_process_says_nothing_of_others():
+    assert [not why for why in why_not_linear([Proportional(), Ending(), Proportional()])] == [
+        *(True, False, True)
+    ]
 
 
 @pytest.mark.parametrize(
