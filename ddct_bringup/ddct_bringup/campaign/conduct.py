@@ -4,7 +4,6 @@
 
 from collections.abc import Callable
 from contextlib import closing
-from dataclasses import dataclass
 from pathlib import Path
 
 from ddct_bringup.campaign.campaign import Campaign
@@ -13,8 +12,8 @@ from ddct_bringup.campaign.plan import CampaignPlan, RecordedCampaign, carried
 from ddct_bringup.campaign.shards import CampaignWork, runs_in, shards_of
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.manifest.begun import begun_manifest
-from ddct_bringup.manifest.file_states import altered_files, require_unaltered
-from ddct_bringup.manifest.inputs import INPUTS, InputFiles, full_path
+from ddct_bringup.manifest.file_states import require_unaltered
+from ddct_bringup.manifest.inputs import INPUTS, InputFiles
 from ddct_bringup.manifest.limits import NamedLimits
 from ddct_bringup.manifest.manifest import (
     CAMPAIGN,
@@ -26,6 +25,7 @@ from ddct_bringup.manifest.manifest import (
     require_same_inputs,
     resume_manifest,
 )
+from ddct_bringup.manifest.written_before import WrittenBefore
 from ddct_bringup.many_runs.engine import WorkEngine, Workers, workers_of
 from ddct_bringup.run.output_folder import (
     locked_folders,
@@ -34,12 +34,10 @@ from ddct_bringup.run.output_folder import (
 from ddct_bringup.verdict.limits import Limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import write_bytes
-from ddct_plant.program.command_line import complain
 from ddct_plant.program.progress import Progress
 
 RESULTS = 'results.parquet'
 SHARDS = 'shards'
-PROGRAM = 'ddct campaign'
 RESUME = 'what is done stays: go on with --resume'
 
 
@@ -99,8 +97,8 @@ def carry_out_recorded(
     work = CampaignWork(campaign.spec, limits, recorded.origin.code, recorded.plan.spec_digest)
     names = shards_of(campaign, recorded.plan.shard_size)
     shards = {out / SHARDS / name: cases for name, cases in names.items()}
-    done_before = _Done(recorded.result, manifest)
-    missing = [file for file in shards if not done_before.has(file)]
+    written = WrittenBefore(recorded.result, manifest)
+    missing = [file for file in shards if not written.has(file)]
     groups = len(campaign.controllers)
     done = campaign.runs - groups * sum(len(shards[file]) for file in missing)
     blocks = (runs_in(campaign, shards[file]) for file in missing)
@@ -115,29 +113,6 @@ def carry_out_recorded(
     rows = {file: groups * len(cases) for file, cases in shards.items()}
     merge(rows, groups, schema_of(campaign.spec), out / RESULTS, RESUME)
     keep_digests([out / RESULTS])
-
-
-@dataclass(frozen=True)
-class _Done:
-    """
-    Shards that were written before.
-
-    Their digests, kept when they were written, say that they have their rows: a campaign is
-    resumed with the same plan only.
-    """
-
-    result: Path
-    manifest: Manifest
-
-    def has(self, file: Path) -> bool:
-        """Return whether a shard was written before; report one that was altered since."""
-        name = full_path(file).relative_to(full_path(self.result)).as_posix()
-        if name not in self.manifest.files or not file.exists():
-            return False
-        if altered_files(self.result, self.manifest, [name]):
-            complain(PROGRAM, f'{file}: altered since it was computed: it is computed again')
-            return False
-        return True
 
 
 def _begin(

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ddct_bringup.campaign.conduct import SHARDS, begin_folder, require_going_on
 from ddct_bringup.manifest.begun import begun_manifest
-from ddct_bringup.manifest.file_states import altered_files, require_unaltered
+from ddct_bringup.manifest.file_states import require_unaltered
 from ddct_bringup.manifest.inputs import InputFiles
 from ddct_bringup.manifest.manifest import (
     TUNING,
@@ -18,6 +18,7 @@ from ddct_bringup.manifest.manifest import (
     require_same_inputs,
     resume_manifest,
 )
+from ddct_bringup.manifest.written_before import WrittenBefore
 from ddct_bringup.run.output_folder import (
     locked_folders,
 )
@@ -33,10 +34,8 @@ from ddct_bringup.tuning.tables import batch_file, rows_by_trial, write_batch
 from ddct_bringup.tuning.trial import DOMINATED, FEASIBLE, NO_ROWS, Trial
 from ddct_bringup.tuning.tuning import Tuning
 from ddct_plant.base.errors import DdctError
-from ddct_plant.program.command_line import complain
 from ddct_plant.program.progress import Progress
 
-PROGRAM = 'ddct tune'
 LEAST_TOGETHER = 24
 """Fewest cases of a part whose runs are computed together: a batch of few takes nearly as long."""
 _HOPELESS = 2 * BATCH
@@ -64,8 +63,9 @@ def carry_out_tuning(
     with locked_folders(out):
         recorded, manifest = _begin(tuning, out, resume=resume)
         study = TuningStudy(recorded.spec, recorded.present, out)
+        written = WrittenBefore(out, manifest)
         with evaluation(recorded, workers, stopped) as computed:
-            return _Search(recorded, out, study, computed, manifest, known_times).trials()
+            return _Search(recorded, out, study, computed, written, known_times).trials()
 
 
 def _begin(tuning: Tuning, out: Path, *, resume: bool) -> tuple[Tuning, Manifest]:
@@ -96,8 +96,8 @@ class _Search:
     out: Path
     study: TuningStudy
     computed: TrialRuns
-    manifest: Manifest
-    """Manifest with the digests of the batches that were recorded before."""
+    written: WrittenBefore
+    """Rows of the batches that were recorded before."""
     known_times: Mapping[int, Mapping[str, float | None]]
     """Update times by trial where they are not measured again, as they never come out again."""
 
@@ -130,17 +130,13 @@ class _Search:
         """
         Return the trials of a batch that was recorded before, None for one that is not complete.
 
-        Report one that was altered; raise DdctError where the study has other trials.
+        Report rows that were altered; raise DdctError where the study has other trials.
         """
         trials = self.study.trials[batch * BATCH :][: len(suggested)]
         if any(dict(each.values) != suggested[each.number] for each in trials):
             raise self._other_trials()
         file = batch_file(self.out, batch)
-        name = file.relative_to(self.out).as_posix()
-        if len(trials) < len(suggested) or name not in self.manifest.files:
-            return None
-        if altered_files(self.out, self.manifest, [name]):
-            complain(PROGRAM, f'{file}: altered since it was computed: it is computed again')
+        if len(trials) < len(suggested) or not self.written.has(file):
             return None
         rows = rows_by_trial(file)
         trials = [replace(each, rows=rows.get(each.number, NO_ROWS)) for each in trials]

@@ -99,7 +99,7 @@ def test_a_folder_with_a_tuning_needs_resume_and_the_same_tuning(tmp_path: Path)
         carry_out_tuning(tuning(trials=2), out, resume=True)
 
 
-def test_altered_rows_are_computed_again_and_an_altered_study_is_refused(
+def test_altered_or_deleted_rows_are_computed_again_and_an_altered_study_is_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / 'out'
@@ -109,7 +109,10 @@ def test_altered_rows_are_computed_again_and_an_altered_study_is_refused(
     path.write_bytes(rows[:-1])
     again = carry_out_tuning(tuning(trials=2), out, workers=1, resume=True)
     assert [each.state for each in again] == [each.state for each in first]
-    assert '000000.parquet: altered' in capsys.readouterr().err
+    assert f'ddct tune: {path}: altered' in capsys.readouterr().err
+    assert path.read_bytes() == rows
+    path.unlink()
+    carry_out_tuning(tuning(trials=2), out, workers=1, resume=True)
     assert path.read_bytes() == rows
     journal = out / JOURNAL
     recorded = journal.read_text()
