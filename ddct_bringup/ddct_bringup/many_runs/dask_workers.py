@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from concurrent.futures import CancelledError, Future
 from typing import Any
 
-from ddct_bringup.many_runs.local_workers import Ended, Submit, timed
+from ddct_bringup.many_runs.local_workers import Ended, Submit
 from ddct_bringup.many_runs.work import Work
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
 
@@ -55,8 +55,8 @@ class DaskWorkers:
         """Return the function that hands over blocks; that of a failed worker goes to another."""
         executor = self._client.get_executor(pure=False)
 
-        def submit(items: Sequence[Any]) -> 'Future[tuple[Any, float]]':
-            future = executor.submit(timed, work, items)
+        def submit(items: Sequence[Any]) -> 'Future[Any]':
+            future = executor.submit(work.of_block, items)
             future.add_done_callback(self._heard_of)
             return future
 

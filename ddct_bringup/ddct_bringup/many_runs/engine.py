@@ -74,7 +74,7 @@ class WorkEngine(Generic[Item, Result]):
         KeyboardInterrupt when the user has stopped the program.
         """
         waiting = enumerate(blocks)
-        running: dict[Future[tuple[Result, float]], tuple[int, Sequence[Item]]] = {}
+        running: dict[Future[Result], tuple[int, Sequence[Item]]] = {}
         ended: dict[int, Sequence[Item]] = {}
         # Where the last processes were killed, none of these counts until others are not.
         apart: list[Done[Item, Result]] = []
@@ -103,7 +103,7 @@ class WorkEngine(Generic[Item, Result]):
                     ended[place] = items
                 else:
                     self._killed = 0
-                    yield Done(place, items, future.result()[0])
+                    yield Done(place, items, future.result())
 
     def in_order(self, blocks: Iterable[Sequence[Item]]) -> Iterator[Result]:
         """Yield the result of each block, in the order of the blocks; raise as `done`."""
@@ -135,7 +135,7 @@ class WorkEngine(Generic[Item, Result]):
         ended = self._ended(alone, future, items)
         if ended is None:
             self._killed = 0
-            return future.result()[0]
+            return future.result()
         if not ended.by_itself and (len(items) == 1 or not ended.how):
             self._killed += 1
             if self._killed == _MOST_DEATHS:
@@ -153,7 +153,7 @@ class WorkEngine(Generic[Item, Result]):
         )
 
     def _ended(
-        self, workers: Workers, future: 'Future[tuple[Result, float]]', items: Sequence[Item]
+        self, workers: Workers, future: 'Future[Result]', items: Sequence[Item]
     ) -> Ended | None:
         """Return how the process of a block ended, None with a result; raise an error of it."""
         error = CancelledError() if future.cancelled() else future.exception()
@@ -164,9 +164,7 @@ class WorkEngine(Generic[Item, Result]):
             return ended
         raise self.work.error(items, error) if isinstance(error, Exception) else error
 
-    def _finished(
-        self, futures: Iterable[Future[tuple[Result, float]]]
-    ) -> set[Future[tuple[Result, float]]]:
+    def _finished(self, futures: Iterable[Future[Result]]) -> set[Future[Result]]:
         """Return the finished ones of futures, none after `_POLL_S`."""
         finished = wait(futures, _POLL_S, FIRST_COMPLETED).done
         if self.stopped():

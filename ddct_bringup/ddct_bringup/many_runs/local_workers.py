@@ -12,7 +12,6 @@ import gc
 import multiprocessing
 import os
 import signal
-import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import BrokenExecutor, Future, ProcessPoolExecutor
 from multiprocessing.process import BaseProcess
@@ -23,8 +22,8 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.program.arithmetic import limit_threads
 from ddct_plant.program.signals import deferred_signals, obey_parent
 
-Submit = Callable[[Sequence[Any]], 'Future[tuple[Any, float]]']
-"""Hand over a block; the future has its result and the time in s that it took."""
+Submit = Callable[[Sequence[Any]], 'Future[Any]']
+"""Hand over a block; the future has its result."""
 
 
 class Ended(NamedTuple):
@@ -60,7 +59,7 @@ class LocalWorkers:
             self._work = work
         return self._submit
 
-    def _submit(self, items: Sequence[Any]) -> 'Future[tuple[Any, float]]':
+    def _submit(self, items: Sequence[Any]) -> 'Future[Any]':
         assert self._pool is not None
         future = self._pool.submit(_of_block, items)
         self._processes |= {*multiprocessing.active_children()} - self._not_ours
@@ -77,13 +76,14 @@ class LocalWorkers:
             return None
         processes = self._processes
         self.close()
+        codes = [each.exitcode for each in processes if each.exitcode is not None]
         # Python ends the others by SIGTERM when one has ended.
-        codes = [each.exitcode for each in processes if each.exitcode != -signal.SIGTERM]
-        code = next((each for each in codes if each is not None), -signal.SIGKILL)
+        own = [code for code in codes if code != -signal.SIGTERM] or codes
+        code = own[0] if own else -signal.SIGKILL
         if code >= 0:
             return Ended(f'its process ended with exit code {code}', by_itself=True)
         name = signal.Signals(-code).name
-        if code == -signal.SIGKILL:
+        if code in (-signal.SIGKILL, -signal.SIGTERM):
             return Ended(f'its process was killed ({name})', by_itself=False)
         return Ended(f'its process crashed ({name})', by_itself=True)
 
@@ -124,10 +124,10 @@ class ThisProcess:
     def begin(self, work: Work[Any, Any]) -> Submit:
         """Return the function that does a block at once."""
 
-        def submit(items: Sequence[Any]) -> 'Future[tuple[Any, float]]':
-            future: Future[tuple[Any, float]] = Future()
+        def submit(items: Sequence[Any]) -> 'Future[Any]':
+            future: Future[Any] = Future()
             try:
-                future.set_result(timed(work, items))
+                future.set_result(work.of_block(items))
             except Exception as error:
                 future.set_exception(error)
             return future
@@ -162,12 +162,6 @@ def is_worker() -> bool:
     return _work is not None
 
 
-def timed(work: Work[Any, Any], items: Sequence[Any]) -> tuple[Any, float]:
-    """Return the result of a block, and the time in s that it took."""
-    started = time.perf_counter()
-    return work.of_block(items), time.perf_counter() - started
-
-
 _work: Work[Any, Any] | None = None
 """Work of a forked worker."""
 
@@ -183,7 +177,7 @@ def _begin(parent: int, work: Work[Any, Any]) -> None:
     limit_threads(1)
 
 
-def _of_block(items: Sequence[Any]) -> tuple[Any, float]:
+def _of_block(items: Sequence[Any]) -> Any:
     """Return the result of a block of the worker's work, which is there since the fork."""
     assert _work is not None
-    return timed(_work, items)
+    return _work.of_block(items)

@@ -9,7 +9,7 @@ from typing import Any
 from unittest import mock
 
 from ddct_bringup.campaign import conduct
-from ddct_bringup.many_runs.local_workers import Ended, Submit, timed
+from ddct_bringup.many_runs.local_workers import Ended, Submit
 from ddct_bringup.many_runs.work import Work
 
 
@@ -26,13 +26,13 @@ class OneByOne:
     def begin(self, work: Work[Any, Any]) -> Submit:
         self.begun += 1
 
-        def submit(items: Sequence[int]) -> Future[tuple[Any, float]]:
-            future: Future[tuple[Any, float]] = Future()
+        def submit(items: Sequence[int]) -> Future[Any]:
+            future: Future[Any] = Future()
             self.computed.append(items[0])
             if error := self._breaks(items[0]):
                 future.set_exception(error)
             else:
-                future.set_result(timed(work, items))
+                future.set_result(work.of_block(items))
             return future
 
         return submit

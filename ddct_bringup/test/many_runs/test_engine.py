@@ -72,6 +72,8 @@ def _ends_at_some(item: int) -> int:
         os._exit(3)
     if item == 21:
         os.kill(os.getpid(), signal.SIGKILL)
+    if item == 30:
+        os.kill(os.getpid(), signal.SIGTERM)
     return item
 
 
@@ -84,6 +86,7 @@ def test_an_item_that_ends_its_process_has_the_reason_and_all_others_their_resul
     expected[7] = '7: its process crashed (SIGSEGV)'
     expected[8] = '8: its process ended with exit code 3'
     expected[21] = '21: its process was killed (SIGKILL)'
+    expected[30] = '30: its process was killed (SIGTERM)'
     assert values(_ends_at_some, size, workers) == expected
 
 
