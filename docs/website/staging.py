@@ -9,6 +9,7 @@ from pathlib import Path
 from website.notebook_pages import notebook_page
 from website.reference import write_reference
 from website.results import with_results
+from website.schemas import with_schemas
 
 ROOT = Path(__file__).resolve().parents[2]
 FRONT = 'README.md'
@@ -51,6 +52,7 @@ def stage(folder: Path, results: Path) -> None:
             text = page.read_text(encoding='utf-8')
         text = staged(page, text, folder)
         text = with_results(text, results, folder / name.parent / 'pictures')
+        text = with_schemas(text, folder / name.parent / 'schemas')
         if name == Path(FRONT):
             name, text = Path('index.md'), text + _sidebar()
         target = folder / name

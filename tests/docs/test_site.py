@@ -13,6 +13,7 @@ from website.results import FILES, MARK, with_results
 from website.staging import ROOT, staged
 
 from ddct_bringup.reproduction.studies.command import STUDIES
+from ddct_bringup.schemas import DOCUMENTS
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program.table import Table
 
@@ -72,6 +73,8 @@ def test_the_site_is_whole(site: Path) -> None:
     notebook = page(site, 'docs/notebooks/thesis_in_one_hour')
     assert '<table' in notebook and 'alt="Slip reference over time' in notebook
     assert 'href="../notebooks/thesis_in_one_hour.html"' in page(site, 'docs/use/python')
+    assert '>scores.schema.json<' in page(site, 'docs/use/json')
+    assert len([*(site / '_downloads').rglob('*.schema.json')]) == len(DOCUMENTS)
     for name in ('docs/develop/gear_shift', 'docs/thesis/model', 'docs/thesis/plant'):
         assert '<math ' in page(site, name)
     text = ' '.join(page(site, name) for name in PAGES_OF_RESULTS)

@@ -16,7 +16,11 @@ ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
 WITHIN = {
     'base': (),
-    'files': ('date_times.is_date_time', 'date_times.seconds_since_first'),
+    'files': (
+        *('date_times.is_date_time', 'date_times.seconds_since_first'),
+        *(f'json_records.{name}' for name in ('LISTS', 'MAPPINGS', 'UNIONS')),
+        *(f'json_records.{name}' for name in ('choices_of', 'fields_of', 'is_record', 'keys_of')),
+    ),
     'program': (
         'signals.interruptible',
         'signals.is_first_report',

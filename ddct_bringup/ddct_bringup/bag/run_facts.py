@@ -34,7 +34,7 @@ class RunConditions:
     """Name of the scenario."""
     wear_gain: float
     mode: str
-    """Mode: 'lockstep', 'realtime', or MEASURED for the log of another tool."""
+    """Mode: 'lockstep', 'realtime', or 'measured' for the log of another tool."""
     seed: int
 
     def __post_init__(self) -> None:

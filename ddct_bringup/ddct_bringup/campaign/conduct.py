@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import merge, parquet_bytes, schema_of
-from ddct_bringup.campaign.plan import CampaignPlan, RecordedCampaign, carried
+from ddct_bringup.campaign.plan import CampaignPlan, NoPlan, RecordedCampaign, carried
 from ddct_bringup.campaign.shards import CampaignWork, runs_in, shards_of
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.manifest.begun import begun_manifest
@@ -141,7 +141,7 @@ def _begin(
     begin_folder(out)
     inputs.copy(out)
     plan = CampaignPlan.of(Campaign(spec_of(content, out / INPUTS)), named, out)
-    begin_manifest(out, CAMPAIGN, {}, inputs, {ITSELF: plan})
+    begin_manifest(out, CAMPAIGN, NoPlan(), inputs, {ITSELF: plan})
     manifest = resume_manifest(out, read_manifest(out), one_machine=one_machine)
     return RecordedCampaign.read(out), manifest
 

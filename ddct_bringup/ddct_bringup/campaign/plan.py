@@ -35,6 +35,11 @@ _NUMBERS = (
 
 
 @dataclass(frozen=True)
+class NoPlan:
+    """Plan of a result that is a campaign: it has all of it under `campaigns`."""
+
+
+@dataclass(frozen=True)
 class CampaignPlan:
     """Inputs of a campaign: seed, specification and limits."""
 

@@ -52,17 +52,31 @@ class ScoresEntry:
     """Verdict, figures and metrics of a run."""
 
     valid: bool
+    """Whether the run counts."""
     reason: str
+    """Why it does not count; empty where it does."""
     state: str
+    """What came of the engagement or the gear shift."""
     why: str
+    """Values that decide the state; empty for a success."""
     figures: Mapping[str, float | bool | None]
+    """What the run is judged by, by name, and `least_is_bound`."""
     metrics: Mapping[str, float | None]
+    """The other metrics, by name."""
     limits: Sequence[LimitResult]
+    """Metrics that have a limit."""
     null_reasons: Mapping[str, str]
+    """Why a figure or metric has no value, by its name."""
     fallbacks: int | None
+    """
+    How often a predictive controller had no solution and used its last plan; None for the others.
+    """
     safe_state: str | None
+    """In real time, which nodes entered their safe state and when; None in lock-step."""
     scenario_changes: Sequence[str] | None
+    """What differs from the packaged scenario of the same name, as KEY=VALUE."""
     gain_changes: Sequence[GainChangeEntry]
+    """Gains of the controller that were changed while it ran."""
 
 
 @dataclass(frozen=True)
@@ -70,6 +84,7 @@ class RunEntry:
     """A run that is no gear shift."""
 
     bag: str
+    """Bag or log of the run."""
     conditions: Inline[RunConditions]
     scores: Inline[ScoresEntry]
 

@@ -14,6 +14,7 @@ from typing import Any
 import pyarrow.parquet as parquet
 import pytest
 from altered_bytes import kinds_of_files, not_found
+from by_schema import require_schemas
 from printed_commands import printed_commands, run_printed
 from refusals import refused
 from small_benchmark import (
@@ -36,6 +37,7 @@ from ddct_bringup.benchmark.report.rules import NO_GAIN, left_open_here, states_
 from ddct_bringup.benchmark.result_types import Result
 from ddct_bringup.manifest.manifest import MANIFEST
 from ddct_bringup.manifest.origin import CodeOrigin
+from ddct_bringup.run.timing_and_failure import TIMING_FILE
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import STATES
 from ddct_bringup.verification import repetition
@@ -95,6 +97,11 @@ def test_the_board_has_every_controller_with_its_figures_and_who_dominates_it(
     assert [(each['better'], each['worse'], each['left_out']) for each in of_ls8] == [
         (0, 0, 0)
     ] * 5
+
+
+def test_the_files_of_a_benchmark_are_as_their_schemas(place: Path) -> None:
+    names = {MANIFEST: 'manifest_benchmark', RESULT: 'benchmark', TIMING_FILE: 'update_times'}
+    require_schemas(place / 'first', names)
 
 
 def test_the_bytes_are_the_same_after_an_interruption(place: Path, tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from by_schema import require_schemas
 from samples import sampled
 from verified import (
     CONTROLLER,
@@ -43,6 +44,10 @@ grid: {{car: [c635_thesis, other.yaml], duration_s: [0.7]}}
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the folder of a campaign of two rows."""
     return make_small_campaign(tmp_path_factory.mktemp('whole'))
+
+
+def test_the_files_of_a_campaign_are_as_their_schemas(whole: Path) -> None:
+    require_schemas(whole, {'manifest.json': 'manifest_campaign', 'summary.json': 'campaign'})
 
 
 def test_an_untouched_campaign_is_the_same_to_the_last_bit_wherever_it_is(

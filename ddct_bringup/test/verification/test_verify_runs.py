@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from by_schema import require_schemas
 from edited_settings import edited
 from samples import sampled
 from verified import (
@@ -61,6 +62,16 @@ def test_an_untouched_folder_is_the_same_to_the_last_bit_wherever_it_is(
     assert {file['state'] for file in document['files']} == {'same'}
     assert (document['same'], document['state'], document['bound']) == (True, 'same_bits', 0.0)
     assert document['by_digest'] == ['timing.json']
+
+
+def test_the_files_of_compared_runs_are_as_their_schemas(runs: Path) -> None:
+    names = {
+        'scores.json': 'scores',
+        'frequency.json': 'frequency',
+        'manifest.json': 'manifest_runs',
+        'pi/timing.json': 'timing',
+    }
+    require_schemas(runs, names)
 
 
 def test_a_result_has_one_manifest_and_no_path_of_this_machine(runs: Path) -> None:

@@ -10,6 +10,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
+from by_schema import require_schemas
 from python_controllers import IMPORTS, PROPORTIONAL
 from small_tuning import leave_out_pictures, made_tuning
 from verified import copied, edit_json_with_digest, edit_manifest, edit_with_digest
@@ -41,6 +42,10 @@ def states(folder: Path, to: Path) -> dict[str, str]:
     found = json.loads(to.read_text())
     assert not found['error']
     return {each['run']: each['state'] for each in found['runs']}
+
+
+def test_the_files_of_a_tuning_are_as_their_schemas(finished: Path) -> None:
+    require_schemas(finished, {'manifest.json': 'manifest_tuning', 'front.json': 'tune'})
 
 
 def test_a_tuning_comes_out_again_where_it_was_moved_to(finished: Path, tmp_path: Path) -> None:

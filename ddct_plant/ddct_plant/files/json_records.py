@@ -6,6 +6,9 @@ Write and read all JSON: results, evidence, manifests, and the texts in a bag.
 A dataclass is the record: its fields are the keys, in their order, all of them in every file.
 Fields with `init=False` are computed, and are no keys; those that are `Inline` are no keys either:
 the keys of the dataclass in them stand in the object itself.
+
+A new document is a frozen dataclass, whose fields have docstrings: `write_json(path, record)`
+writes it, `read_json(Kind, path)` reads it, and a line in `ddct_bringup.schemas` gives its schema.
 """
 
 import dataclasses
@@ -44,9 +47,9 @@ def to_json(obj: Any) -> Any:
     if obj is None or isinstance(obj, (bool, int, float, str)):
         return obj.value if isinstance(obj, enum.Enum) else obj
     kind: Any = type(obj)
-    if _is_record(kind):
+    if is_record(kind):
         content: dict[str, Any] = {}
-        for name, (_, inlined) in _fields(kind).items():
+        for name, (_, inlined) in fields_of(kind).items():
             value = to_json(getattr(obj, name))
             content |= value if inlined else {name: value}
         return content
@@ -172,24 +175,24 @@ _PLAIN: dict[Any, str] = {
     type(None): 'null',
 }
 """Plain types with their names in an error."""
-_LISTS = (list, tuple, Sequence)
-_MAPPINGS = (dict, Mapping)
-_UNIONS = (typing.Union, types.UnionType)
+LISTS = (list, tuple, Sequence)
+MAPPINGS = (dict, Mapping)
+UNIONS = (typing.Union, types.UnionType)
 
 
 def _expected(kind: Any) -> str:
     """Return the name of a type in an error."""
     if kind in _PLAIN:
         return _PLAIN[kind]
-    if typing.get_origin(kind) in _UNIONS:
+    if typing.get_origin(kind) in UNIONS:
         return ' or '.join(dict.fromkeys(_expected(each) for each in typing.get_args(kind)))
-    choices = _choices(kind)
+    choices = choices_of(kind)
     if choices:
         return ' or '.join(json.dumps(each) for each in choices)
-    return 'a list' if typing.get_origin(kind) in _LISTS else 'an object'
+    return 'a list' if typing.get_origin(kind) in LISTS else 'an object'
 
 
-def _choices(kind: Any) -> tuple[Any, ...]:
+def choices_of(kind: Any) -> tuple[Any, ...]:
     """Return the values of a literal or an enum; empty for another type."""
     if typing.get_origin(kind) is typing.Literal:
         return typing.get_args(kind)
@@ -204,21 +207,21 @@ def _reader(kind: Any) -> _Reader:
     if kind in (Any, object):
         return lambda data: data
     origin, arguments = typing.get_origin(kind), typing.get_args(kind)
-    if kind in _PLAIN or _choices(kind):
+    if kind in _PLAIN or choices_of(kind):
         return partial(_read_plain, kind)
-    if origin in _UNIONS:
+    if origin in UNIONS:
         return _union_reader(kind)
-    if origin in _LISTS:
+    if origin in LISTS:
         return _list_reader(kind)
-    if origin in _MAPPINGS:
+    if origin in MAPPINGS:
         return partial(_read_mapping, kind, *map(_reader, arguments))
-    if _is_record(kind):
+    if is_record(kind):
         return partial(_read_record, kind)
     raise TypeError(f'{kind} has no form in JSON')
 
 
 def _read_plain(kind: Any, data: Any) -> Any:
-    choices = _choices(kind)
+    choices = choices_of(kind)
     if choices:
         if any(type(data) is type(each) and data == each for each in choices):
             return kind(data) if isinstance(kind, type) else data
@@ -235,11 +238,11 @@ def _union_reader(kind: Any) -> _Reader:
     """Return the converter to one of several types, of which at most one is a list."""
     kinds = typing.get_args(kind)
     origins = [typing.get_origin(each) for each in kinds]
-    lists = [each for each, origin in zip(kinds, origins, strict=True) if origin in _LISTS]
+    lists = [each for each, origin in zip(kinds, origins, strict=True) if origin in LISTS]
     objects = [
         each
         for each, origin in zip(kinds, origins, strict=True)
-        if origin in _MAPPINGS or _is_record(each)
+        if origin in MAPPINGS or is_record(each)
     ]
     values = [each for each in kinds if each not in lists and each not in objects]
 
@@ -259,9 +262,9 @@ def _union_reader(kind: Any) -> _Reader:
 
 def _differences(kind: Any, data: dict[str, Any]) -> int:
     """Return the number of keys by which an object is no record of this type."""
-    if not _is_record(kind):
+    if not is_record(kind):
         return 0
-    keys = _keys(kind)
+    keys = keys_of(kind)
     count = len(keys.keys() ^ data.keys())
     for name in keys.keys() & data.keys():
         try:
@@ -313,15 +316,15 @@ def _read_mapping(kind: Any, read_key: _Reader, read_value: _Reader, data: Any) 
 def _read_record(kind: Any, data: Any) -> Any:
     if not isinstance(data, dict):
         raise _wrong_type(data, kind)
-    keys = _keys(kind)
+    keys = keys_of(kind)
     for name in data:
         if name not in keys:
             raise _RecordError(f'unknown key {{}}: {close_name(name, keys)}', name)
     found = {}
-    for name, (hint, inlined) in _fields(kind).items():
+    for name, (hint, inlined) in fields_of(kind).items():
         if inlined:
             found[name] = _read_record(
-                hint, {key: data[key] for key in _keys(hint) if key in data}
+                hint, {key: data[key] for key in keys_of(hint) if key in data}
             )
             continue
         if name not in data:
@@ -336,12 +339,13 @@ def _read_record(kind: Any, data: Any) -> Any:
         raise _RecordError(f'{{}}: {error}') from error
 
 
-def _is_record(kind: Any) -> bool:
+def is_record(kind: Any) -> bool:
+    """Return whether a type is a dataclass."""
     return dataclasses.is_dataclass(kind)
 
 
 @cache
-def _fields(kind: Any) -> dict[str, tuple[Any, bool]]:
+def fields_of(kind: Any) -> dict[str, tuple[Any, bool]]:
     """Return by name the type of each field that is not computed, and whether it is inline."""
     hints = typing.get_type_hints(kind, include_extras=True)
     plain = typing.get_type_hints(kind)
@@ -353,11 +357,11 @@ def _fields(kind: Any) -> dict[str, tuple[Any, bool]]:
 
 
 @cache
-def _keys(kind: Any) -> dict[str, Any]:
+def keys_of(kind: Any) -> dict[str, Any]:
     """Return the types of the keys of a dataclass."""
     keys: dict[str, Any] = {}
-    for name, (hint, inlined) in _fields(kind).items():
-        keys |= _keys(hint) if inlined else {name: hint}
+    for name, (hint, inlined) in fields_of(kind).items():
+        keys |= keys_of(hint) if inlined else {name: hint}
     return keys
 
 

@@ -1,0 +1,31 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""What programs write, held against its schema by a validator that is not ours."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from ddct_bringup.schemas import DOCUMENTS
+
+
+def require_schema(name: str, document: Any) -> None:
+    """Require a document to be as its schema, which only so far allows what it has."""
+    jsonschema = pytest.importorskip('jsonschema', reason='make .venv/.test')
+    schema = DOCUMENTS[name].schema
+    validator = jsonschema.Draft202012Validator(schema)
+    validator.check_schema(schema)
+    faults = validator.iter_errors(document)
+    assert [f'{each.json_path}: {each.message}' for each in faults] == []
+    first = next(iter(document))
+    less = {key: value for key, value in document.items() if key != first}
+    assert not validator.is_valid(less)
+
+
+def require_schemas(folder: Path, names: Mapping[str, str]) -> None:
+    """Require files of a folder to be as their schemas, `names` by path in the folder."""
+    for path, name in names.items():
+        require_schema(name, json.loads((folder / path).read_text(encoding='utf-8')))
