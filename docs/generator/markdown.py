@@ -14,5 +14,5 @@ def as_markdown(table: Table) -> str:
 
 
 def _line(cells: Sequence[str]) -> str:
-    escaped = (cell.replace('|', r'\|') for cell in cells)
+    escaped = (cell.replace('|', r'\|').replace('\n', ' ') for cell in cells)
     return f'| {" | ".join(escaped)} |'

@@ -4,7 +4,8 @@
 
 from collections.abc import Iterator, Mapping
 
-from ddct_bringup.tuning.report.texts import IMPORTANCES, goal_text
+from ddct_bringup.documents.terminal import text_table
+from ddct_bringup.tuning.report.document import effects_table, entries_table
 from ddct_bringup.tuning.result import FrontEntry, TuningResult
 from ddct_bringup.tuning.specification.packaged_specs import packaged_specs
 from ddct_plant.files.json_records import read_json
@@ -20,30 +21,13 @@ def tuning_tables() -> Mapping[str, Table]:
     found = {}
     for name in packaged_specs():
         result = read_json(TuningResult, FOLDER / f'{name}.json')
-        found[name] = _front(result)
-        found[f'{name}_effects'] = _effects(result)
+        found[name] = text_table(entries_table(result, dict(_entries(result))))
+        found[f'{name}_effects'] = text_table(effects_table(result))
     return found
 
 
-def _front(result: TuningResult) -> Table:
-    """Return the ends of the front, its best trial, and the values from before."""
-    goals = [*result.objectives, *result.constraints]
-    headers = ('trial', 'cases', *result.parameters, *(goal.title for goal in goals))
-    rows = []
-    for label, entry in _entries(result):
-        for cases, figures in (
-            ('development', entry.development),
-            ('held out', entry.held_out),
-        ):
-            if figures:
-                values = {**figures.objectives, **figures.constraints}
-                cells = [goal_text(goal, values) for goal in goals]
-                given = [f'{value:.4g}' for value in entry.parameters.values()]
-                rows.append((label, cases, *given, *cells))
-    return Table(f'Front of {result.controller}', headers, rows)
-
-
 def _entries(result: TuningResult) -> Iterator[tuple[str, FrontEntry]]:
+    """Yield the ends of the front, its best trial, and the values from before."""
     front = result.front
     if result.before:
         yield 'before', result.before
@@ -52,12 +36,3 @@ def _entries(result: TuningResult) -> Iterator[tuple[str, FrontEntry]]:
             yield f'{entry.number}, best', entry
         elif entry in (front[0], front[-1]):
             yield f'{entry.number}, end of the front', entry
-
-
-def _effects(result: TuningResult) -> Table:
-    rows = [
-        (goal.title, name, f'{share:.2f}')
-        for goal in result.objectives
-        for name, share in result.importances[goal.name].items()
-    ]
-    return Table(f'What decides, {result.controller}', IMPORTANCES, rows)

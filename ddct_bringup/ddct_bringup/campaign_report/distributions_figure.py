@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ddct_bringup.campaign_report.results import Group, Results
+from ddct_bringup.documents.page_parts import unit_text
 from ddct_bringup.metrics.catalogue import FIGURES, TABLE_5_1
-from ddct_bringup.report.page_parts import unit_text
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
 from ddct_controllers.design.drawing.line_looks import looks_of

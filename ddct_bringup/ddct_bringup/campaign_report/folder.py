@@ -20,9 +20,8 @@ from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.results import Results
 from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.campaign_report.summary_types import Summary
-from ddct_bringup.manifest.manifest import MANIFEST, finish_manifest, keep_digests
-from ddct_bringup.metrics.catalogue import TABLE_5_1
-from ddct_bringup.report.page_parts import (
+from ddct_bringup.documents.page_parts import (
+    DOCUMENTS,
     MARKER,
     json_data,
     number_text,
@@ -30,6 +29,8 @@ from ddct_bringup.report.page_parts import (
     page_template,
     value_text,
 )
+from ddct_bringup.manifest.manifest import MANIFEST, finish_manifest, keep_digests
+from ddct_bringup.metrics.catalogue import TABLE_5_1
 from ddct_bringup.run.output_folder import locked_folders
 from ddct_controllers.design.drawing.chart_style import chart_bytes, chart_style
 from ddct_plant.files.json_records import to_json, write_json
@@ -39,7 +40,7 @@ from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.choices.scenarios import CHOICES, DEFAULT_SCENARIO
 
 SUMMARY, PAGE = 'summary.json', 'report.html'
-_ROOM, _REPORT = 'ddct_bringup.campaign_report', 'ddct_bringup.report'
+_ROOM = 'ddct_bringup.campaign_report'
 _SHOWN_FIRST = (FAILED_SHARE, 'peak_jerk_m_s3')
 """Quantities that the maps show when the page opens, the first available one of these."""
 
@@ -101,8 +102,8 @@ def campaign_page(
     maps = campaign_maps(results)
     return page_template(_ROOM, 'campaign.html.j2').render(
         marker=Markup(MARKER),
-        style=page_part(_REPORT, 'page.css') + page_part(_ROOM, 'campaign.css'),
-        script=page_part(_REPORT, 'common.js') + page_part(_ROOM, 'campaign.js'),
+        style=page_part(DOCUMENTS, 'page.css') + page_part(_ROOM, 'campaign.css'),
+        script=page_part(DOCUMENTS, 'page.js') + page_part(_ROOM, 'campaign.js'),
         data=json_data({'maps': to_json(maps), 'ramp': _ramp(), 'replay': replay}),
         maps=maps,
         chosen=_chosen(maps.quantities) if maps else 0,

@@ -17,7 +17,7 @@ from ddct_bringup.campaign_report.map_types import (
 )
 from ddct_bringup.campaign_report.results import Results
 from ddct_bringup.campaign_report.statistics.outcome import FAILED, Outcomes, count_outcomes
-from ddct_bringup.report.page_parts import unit_text
+from ddct_bringup.documents.page_parts import unit_text
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
 FAILED_SHARE = 'failed_share'

@@ -16,7 +16,7 @@ from ddct_bringup.campaign_report.summary_types import (
     PartSummary,
     Summary,
 )
-from ddct_bringup.report.page_parts import value_text
+from ddct_bringup.documents.page_parts import value_text
 from ddct_plant.program.table import UNDEFINED
 
 RULES = {

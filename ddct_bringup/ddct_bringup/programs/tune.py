@@ -50,7 +50,7 @@ def _tune(argv: list[str]) -> int:
         )
 
     def show() -> None:
-        shell.print_tuning(result)
+        shell.print_document(shell.tuning_document(result))
         print(options.out / BEST)
         print(options.out / PAGE, flush=True)
 

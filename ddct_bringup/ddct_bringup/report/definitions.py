@@ -5,9 +5,9 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from ddct_bringup.documents.page_parts import unit_text
 from ddct_bringup.metrics.catalogue import FIGURES, METRICS, OTHERS
 from ddct_bringup.report.chart_signals import ChartSignal
-from ddct_bringup.report.page_parts import unit_text
 from ddct_bringup.scores.scored_run import YARDSTICK
 from ddct_controllers.design.analysis.loop_quantities import LOOP_QUANTITIES
 from ddct_plant.program.table import Quantity

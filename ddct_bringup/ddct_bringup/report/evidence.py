@@ -9,7 +9,7 @@ It is read from the file that `compare` writes next to the bags, or computed.
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from ddct_bringup.report.page_parts import number_text
+from ddct_bringup.documents.page_parts import number_text
 from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_controllers.design.analysis.loop_quantities import LOOP_QUANTITIES
 from ddct_controllers.workflows.evidence import actuator_conditions, frequency_evidence

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ddct_bringup.documents.page_parts import value_text
 from ddct_bringup.floor.case import case_at
 from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.dynamics.start import Start
@@ -19,7 +20,6 @@ from ddct_bringup.floor.floor import floor_of_case
 from ddct_bringup.floor.front import usual_lock_times
 from ddct_bringup.floor.lock import counted_from, final_lock_of
 from ddct_bringup.metrics.catalogue import JERK_OVER_LEAST
-from ddct_bringup.report.page_parts import value_text
 from ddct_bringup.report.pareto import round_numbers
 from ddct_bringup.scores.floors import PEAK_JERK
 from ddct_bringup.scores.scored_recording import ScoredRecording

@@ -10,12 +10,18 @@ from markupsafe import Markup
 
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.documents.page_parts import (
+    DOCUMENTS,
+    MARKER,
+    json_data,
+    page_part,
+    page_template,
+)
 from ddct_bringup.report.chart_marks import NEUTRAL
 from ddct_bringup.report.charts import chart_document, charted_signals, dashed_lines
 from ddct_bringup.report.definitions import definitions
 from ddct_bringup.report.evidence import COMPUTED, LoopEvidence, loop_rows, without_evidence
 from ddct_bringup.report.front_view import front_view
-from ddct_bringup.report.page_parts import MARKER, json_data, page_part, page_template
 from ddct_bringup.report.page_runs import PageRun, chart_runs, page_runs
 from ddct_bringup.report.pareto import pair_key, pareto_view
 from ddct_bringup.report.phase_lanes import LANES, OPACITY, SHIFT_OPACITY
@@ -39,7 +45,7 @@ from ddct_plant.scenario.differences import scenario_title
 from ddct_plant.scenario.file import scenario_to_yaml
 
 _ROOM = 'ddct_bringup.report'
-_SCRIPTS = ('common.js', 'nearest.js', 'paper.js', 'page.js')
+_SCRIPTS = ('nearest.js', 'paper.js', 'page.js')
 
 
 def report_page(
@@ -66,8 +72,9 @@ def report_page(
     return page_template(_ROOM, 'page.html.j2').render(
         marker=Markup(MARKER),
         bokeh_js=_library(),
-        style=page_part(_ROOM, 'page.css'),
-        script=Markup().join(page_part(_ROOM, each) for each in _SCRIPTS),
+        style=page_part(DOCUMENTS, 'page.css') + page_part(_ROOM, 'page.css'),
+        script=page_part(DOCUMENTS, 'page.js')
+        + Markup().join(page_part(_ROOM, each) for each in _SCRIPTS),
         data=json_data(data),
         quantities=quantities,
         definitions=definitions(quantities, thesis=any(thesis_rows), shift=shift),

@@ -12,9 +12,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations_with_replacement
 
+from ddct_bringup.documents.page_parts import unit_text, value_text
 from ddct_bringup.metrics.catalogue import FIGURES, METRICS
 from ddct_bringup.metrics.metric import Metric
-from ddct_bringup.report.page_parts import unit_text, value_text
 from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.verdict.state import ENGAGED
 

@@ -5,9 +5,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from ddct_bringup.documents.page_parts import number_text, value_text
 from ddct_bringup.metrics.catalogue import FIGURES, JERK_OVER_LEAST, METRICS, OTHERS, TABLE_5_1
 from ddct_bringup.metrics.metric import Metric
-from ddct_bringup.report.page_parts import number_text, value_text
 from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.thesis.predictions import predicted_range
 from ddct_bringup.thesis.table_5_1 import PREDICTED, ThesisRow, is_thesis_run, thesis_row

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ddct_bringup.campaign.rows import ScoredRow
-from ddct_bringup.report.page_parts import unit_text
+from ddct_bringup.documents.page_parts import unit_text
 from ddct_bringup.sweep.state_map import (
     draw_states,
     edges_of,

@@ -4,10 +4,10 @@
 
 import pytest
 
+from ddct_bringup.documents.page_parts import unit_text
 from ddct_bringup.metrics.catalogue import FIGURES, METRICS, OTHERS
 from ddct_bringup.report.chart_signals import CHART_SIGNALS, CLUTCH_SIGNALS, SENSOR_SIGNALS
 from ddct_bringup.report.definitions import definitions
-from ddct_bringup.report.page_parts import unit_text
 from ddct_bringup.report.shift_signals import SHIFT_SIGNALS
 from ddct_bringup.verdict.state import STATES
 from ddct_controllers.design.analysis.loop_quantities import LOOP_QUANTITIES

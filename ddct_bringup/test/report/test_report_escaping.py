@@ -14,8 +14,8 @@ from made_run import made_facts
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.documents.page_parts import symbols
 from ddct_bringup.report.page import report_page
-from ddct_bringup.report.page_parts import symbols
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.scored_recording import ScoredRecording, score_recording
 from ddct_bringup.scores.scoring import unreadable_run

@@ -10,10 +10,10 @@ from pathlib import Path
 from rich.console import Console
 
 from ddct_bringup.api import shell
+from ddct_bringup.documents.page_parts import MARKER
 from ddct_bringup.logs.columns import load_columns
 from ddct_bringup.manifest.manifest import keep_digests
 from ddct_bringup.report.evidence import evidence_of
-from ddct_bringup.report.page_parts import MARKER
 from ddct_bringup.report.run_labels import in_order, require_one_scenario
 from ddct_bringup.run.output_folder import is_ours, locked_folders
 from ddct_bringup.scores.bags import bags_in

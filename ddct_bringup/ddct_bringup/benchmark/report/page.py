@@ -17,7 +17,8 @@ from ddct_bringup.benchmark.result_types import (
 )
 from ddct_bringup.benchmark.update_times import UpdateTimesFile
 from ddct_bringup.campaign_report import texts as campaign_texts
-from ddct_bringup.report.page_parts import (
+from ddct_bringup.documents.page_parts import (
+    DOCUMENTS,
     MARKER,
     number_text,
     page_part,
@@ -27,7 +28,7 @@ from ddct_bringup.report.page_parts import (
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.program.command_line import package_version
 
-_ROOM, _REPORT = 'ddct_bringup.benchmark.report', 'ddct_bringup.report'
+_ROOM = 'ddct_bringup.benchmark.report'
 _CAMPAIGN = 'ddct_bringup.campaign_report'
 
 
@@ -39,10 +40,10 @@ def benchmark_page(result: Result, update_times: UpdateTimesFile) -> str:
     """
     return page_template(_ROOM, 'benchmark.html.j2').render(
         marker=Markup(MARKER),
-        style=page_part(_REPORT, 'page.css')
+        style=page_part(DOCUMENTS, 'page.css')
         + page_part(_CAMPAIGN, 'campaign.css')
         + page_part(_ROOM, 'benchmark.css'),
-        script=page_part(_REPORT, 'common.js') + page_part(_ROOM, 'benchmark.js'),
+        script=page_part(DOCUMENTS, 'page.js') + page_part(_ROOM, 'benchmark.js'),
         result=result,
         update_times=update_times.controllers,
         notes=list(texts.notes_of(result)),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from ddct_bringup.report.page_parts import unit_text
+from ddct_bringup.documents.page_parts import unit_text
 from ddct_bringup.tuning.result import Figures, FrontEntry, GoalEntry, TuningResult
 from ddct_bringup.tuning.specification.goals import MINIMISE
 from ddct_bringup.tuning.specification.parameters import LOG

@@ -5,6 +5,7 @@
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from ddct_bringup.documents.page import html_page
 from ddct_bringup.manifest.code import code_digest
 from ddct_bringup.manifest.manifest import finish_manifest
 from ddct_bringup.run.output_folder import locked_folders
@@ -17,7 +18,7 @@ from ddct_bringup.tuning.held_out import (
 )
 from ddct_bringup.tuning.plan import RecordedTuning
 from ddct_bringup.tuning.report.commands import PageCommands
-from ddct_bringup.tuning.report.page import tuning_page
+from ddct_bringup.tuning.report.document import tuning_document
 from ddct_bringup.tuning.result import TuningResult, result_of
 from ddct_bringup.tuning.study import TuningStudy
 from ddct_bringup.tuning.tables import write_tables
@@ -65,8 +66,8 @@ def write_tuning(
         result = result_of(tuning, study, trials, held_out, campaign.spec.root)
         write_json(str(out / RESULT), result)
         commands = PageCommands.of(tuning, out)
-        page = tuning_page(result, study.study, _facts(tuning), commands)
-        write_text(str(out / PAGE), page)
+        document = tuning_document(result, study.study, commands, _facts(tuning))
+        write_text(str(out / PAGE), html_page(document))
         finish_manifest(out)
     return result
 

@@ -1,12 +1,12 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Definitions and texts of a tuning for its page and the terminal."""
+"""Definitions and remarks of the document of a tuning."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from ddct_bringup.benchmark.report.texts import RULES as BENCHMARK_RULES
-from ddct_bringup.report.page_parts import number_text
-from ddct_bringup.tuning.result import GoalEntry, TuningResult
+from ddct_bringup.documents.document import Terms
+from ddct_bringup.tuning.result import TuningResult
 from ddct_bringup.tuning.study import FEWEST
 
 RULES = {
@@ -28,13 +28,11 @@ RULES = {
     'gap': BENCHMARK_RULES['gap'],
 }
 """Definitions by term."""
-IMPORTANCES = ('objective', 'parameter', 'importance')
-"""Headings of the table of what decides."""
 
 
-def goal_text(goal: GoalEntry, values: Mapping[str, float | None]) -> str:
-    """Return the value of an objective or a constraint as text."""
-    return number_text(values[goal.name], goal.form)
+def terms(*names: str) -> Terms:
+    """Return the definitions of terms."""
+    return Terms({name: RULES[name] for name in names})
 
 
 def notes_of(result: TuningResult) -> Iterator[str]:

@@ -3,7 +3,8 @@
 'use strict';
 
 // What every page of ours does. Its colours are the system's until the button chooses light or dark;
-// a window event `colours` follows each change. Tables sort by the column whose heading is pressed.
+// a window event `colours` follows each change. Tables sort by the column whose heading is pressed, and
+// say so where they are wider than their frame. Paper has what a screen folds away.
 
 const colours = (() => {
   const {dataset} = document.documentElement;
@@ -49,12 +50,29 @@ const colours = (() => {
   document.querySelectorAll('.sort').forEach((button) => button.addEventListener('click', () => {
     const heading = button.closest('th');
     const body = heading.closest('table').tBodies[0];
-    const column = [...heading.parentElement.children].indexOf(heading);
+    const column = Number(heading.dataset.column ?? [...heading.parentElement.children].indexOf(heading));
     const descending = heading.getAttribute('aria-sort') === 'ascending';
-    [...heading.parentElement.children].forEach((other) => other.removeAttribute('aria-sort'));
+    heading.closest('thead').querySelectorAll('th').forEach((other) => other.removeAttribute('aria-sort'));
     heading.setAttribute('aria-sort', descending ? 'descending' : 'ascending');
     const rows = [...body.rows].sort((a, b) => compare(sortKey(a, column), sortKey(b, column)));
     body.append(...(descending ? rows.reverse() : rows));
   }));
 })();
 
+document.querySelectorAll('.scroll').forEach((frame) => {
+  const words = document.createElement('p');
+  words.className = 'more';
+  words.textContent = 'more columns: scroll the table to the side \u2192';
+  frame.after(words);
+
+  function look() {
+    const hidden = frame.scrollWidth - frame.clientWidth;
+    words.hidden = hidden < 2;
+    frame.dataset.more = hidden - frame.scrollLeft < 2 ? '' : 'right';
+    frame.tabIndex = hidden < 2 ? -1 : 0;
+  }
+
+  frame.addEventListener('scroll', look, {passive: true});
+  new ResizeObserver(look).observe(frame);
+  look();
+});

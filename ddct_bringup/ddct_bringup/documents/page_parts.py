@@ -25,6 +25,8 @@ from ddct_bringup.manifest.code import code_digest
 from ddct_plant.files.cache_folder import cache_folder
 from ddct_plant.program.table import PURE
 
+DOCUMENTS = 'ddct_bringup.documents'
+"""Room whose style and script every page has."""
 MARKER = '<meta name="generator" content="ddct_bringup report">'
 """Tag that identifies a page written by this program, which it may replace."""
 _SYMBOL = re.compile(r'\b([A-Za-z]{1,2})_([A-Za-z0-9]+)\b')

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from markupsafe import Markup
 
-from ddct_bringup.report import page_parts
+from ddct_bringup.documents import page_parts
 
 TEXT = '{{ 1 + 1 }} of {{ name }}'
 

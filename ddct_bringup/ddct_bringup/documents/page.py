@@ -1,0 +1,175 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Documents as pages: one HTML file without external resources, for light and dark, and paper."""
+
+import re
+from base64 import b64encode
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from typing import Any
+
+from markupsafe import Markup, escape
+
+from ddct_bringup.documents.document import Bar, Block, Cell, Column, Document, Figure, Table
+from ddct_bringup.documents.page_parts import (
+    DOCUMENTS,
+    MARKER,
+    page_part,
+    page_template,
+    symbols,
+    unit_text,
+)
+
+_WORDS = 28
+"""Number of characters from which the texts of a column wrap."""
+_MINUS = re.compile(r'(?<![\w.])-(?=\d)')
+
+
+def html_page(document: Document) -> str:
+    """Return the HTML of a document."""
+    return page_template(DOCUMENTS, 'page.html.j2').render(
+        marker=Markup(MARKER),
+        style=page_part(DOCUMENTS, 'page.css'),
+        script=page_part(DOCUMENTS, 'page.js'),
+        document=document,
+        kind_of=_kind_of,
+        views=_TableView.of,
+        drawn=_drawn,
+    )
+
+
+def _kind_of(block: Block) -> str:
+    return type(block).__name__
+
+
+def _drawn(figure: Figure) -> Markup:
+    """Return the element of a chart."""
+    chart = figure.draw()
+    if isinstance(chart, Markup):
+        return chart
+    source = f'data:image/svg+xml;base64,{b64encode(chart).decode()}'
+    return Markup('<img class="drawn" src="{}" alt="{}">').format(source, figure.words)
+
+
+@dataclass(frozen=True)
+class _RowView:
+    """Row of a table as HTML."""
+
+    cells: Sequence[Markup]
+    classes: str
+
+
+@dataclass(frozen=True)
+class _TableView:
+    """What the template shows of a table."""
+
+    rows: Sequence[_RowView]
+    groups: Mapping[int, int]
+    """Number of columns of each group by the place of its first one."""
+    notes: Sequence[str]
+
+    @classmethod
+    def of(cls, table: Table) -> '_TableView':
+        """Return the view of a table."""
+        groups = _groups(table.columns)
+        cells = table.cells
+        wraps = [_wraps(each) for each in zip(*cells, strict=True)]
+        blocks = len({row[0].text for row in cells}) < len(cells)
+        rows = [
+            _RowView(
+                [
+                    _element(cell, column, place, wraps=wraps[place], first=place in groups)
+                    for place, (cell, column) in enumerate(zip(row, table.columns, strict=True))
+                ],
+                ' '.join(
+                    name
+                    for name, holds in (
+                        ('emphasised', number in table.emphasised),
+                        ('next', blocks and number and row[0].text != cells[number - 1][0].text),
+                    )
+                    if holds
+                ),
+            )
+            for number, row in enumerate(cells)
+        ]
+        return cls(rows, groups, [*_reasons(table, cells), *table.notes])
+
+
+def _groups(columns: Sequence[Column]) -> Mapping[int, int]:
+    found = {}
+    for name, group in groupby(enumerate(columns), key=lambda each: each[1].group):
+        places = [place for place, _ in group]
+        if name:
+            found[places[0]] = len(places)
+    return found
+
+
+def _wraps(cells: Sequence[Cell]) -> bool:
+    """Return whether a column has texts too long for one line."""
+    return any(isinstance(cell.value, str) and len(cell.value) > _WORDS for cell in cells)
+
+
+def _element(cell: Cell, column: Column, place: int, *, wraps: bool, first: bool) -> Markup:
+    names = (
+        ('num', column.number),
+        ('words', wraps and not column.number),
+        ('wall', cell.wall),
+        ('first', first),
+    )
+    classes = ' '.join(name for name, holds in names if holds)
+    attributes = Markup('')
+    if classes:
+        attributes += Markup(' class="{}"').format(classes)
+    if hint := cell.hint or cell.reason:
+        attributes += Markup(' title="{}"').format(hint)
+    content = Markup().join(_content(cell, column))
+    if place:
+        return Markup('<td{}>{}</td>').format(attributes, content)
+    return Markup('<th scope="row"{}>{}</th>').format(attributes, content)
+
+
+def _content(cell: Cell, column: Column) -> Iterator[Markup]:
+    value = cell.value
+    if value is None:
+        yield Markup('<span class="none">–</span>')
+    else:
+        text: Any = symbols(cell.text) if column.symbols else cell.text
+        text = Markup(_MINUS.sub('−', str(escape(text))))
+        if not isinstance(value, str):
+            text = Markup('<data value="{}">{}</data>').format(value, text)
+        yield Markup('<span class="alarming">{}</span>').format(text) if cell.alarming else text
+        if unit := unit_text(cell.unit):
+            yield Markup(' <small>{}</small>').format(unit)
+        if cell.reason:
+            yield Markup('<span class="star">*</span>')
+    if cell.below:
+        yield Markup('<small class="below">{}</small>').format(_MINUS.sub('−', cell.below))
+    if cell.bar:
+        yield _bar(cell.bar)
+
+
+def _bar(bar: Bar) -> Markup:
+    look = ' alarming' if bar.bad else ''
+    drawn = Markup('<i class="bar{}" style="width:{:.1f}%"></i>').format(look, 100.0 * bar.share)
+    if bar.interval:
+        low, high = (100.0 * end for end in bar.interval)
+        drawn += Markup('<i class="range" style="left:{:.1f}%;right:{:.1f}%"></i>').format(
+            low, 100.0 - high
+        )
+    return Markup('<span class="track">{}</span>').format(drawn)
+
+
+def _reasons(table: Table, cells: Sequence[Sequence[Cell]]) -> Iterator[str]:
+    """Yield a line for each reason of dashes and stars."""
+    found: dict[tuple[str, str], list[str]] = {}
+    for row in cells:
+        for cell, column in zip(row, table.columns, strict=True):
+            if cell.reason:
+                sign = '–' if cell.value is None else '*'
+                titles = found.setdefault((sign, cell.reason), [])
+                name = ' '.join(filter(None, (column.group, column.title)))
+                if name not in titles:
+                    titles.append(name)
+    for (sign, reason), titles in found.items():
+        yield f'{sign} in {", ".join(titles)}: {reason}'

@@ -1,0 +1,280 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The document of a tuning: the best trial, the front, what decides, convergence, origin."""
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+from ddct_bringup.benchmark.report.texts import figure_name
+from ddct_bringup.campaign_report.texts import p_text
+from ddct_bringup.documents.document import (
+    Block,
+    Cell,
+    Column,
+    Document,
+    Figure,
+    Note,
+    Remarks,
+    Row,
+    Section,
+    Table,
+    Terms,
+    given,
+)
+from ddct_bringup.tuning.report import texts
+from ddct_bringup.tuning.report.commands import PageCommands
+from ddct_bringup.tuning.report.figures import front_figure, progress_figure, slices_figure
+from ddct_bringup.tuning.result import Figures, FrontEntry, TuningResult
+from ddct_controllers.design.drawing.chart_style import chart_bytes, chart_style
+from ddct_plant.program.table import Weight
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as MatplotlibFigure
+    from optuna import Study
+
+_NAME = Weight.IDENTIFYING
+
+
+def tuning_document(
+    result: TuningResult,
+    study: 'Study | None' = None,
+    commands: PageCommands | None = None,
+    facts: Mapping[str, str] | None = None,
+) -> Document:
+    """
+    Return the document of a tuning.
+
+    A page also has the charts of its study, the commands for its folder, and its origin.
+    """
+    return Document(
+        'Tuning',
+        f'Tuning of {result.controller}',
+        f'{result.trials} trials on {result.cases} development cases · '
+        f'{", ".join(result.parameters)}',
+        given(
+            Remarks('Of this tuning', list(texts.notes_of(result))),
+            _best(result, commands),
+            _front(result, study),
+            _decides(result, study),
+            _convergence(result, study),
+            _trials(result),
+            _origin(result, commands, facts),
+        ),
+    )
+
+
+def _best(result: TuningResult, commands: PageCommands | None) -> Section:
+    best = next(each for each in result.front if each.number == result.best)
+    entries = {_label(result, best): best}
+    if result.before:
+        entries['before'] = result.before
+    return Section(
+        'The best trial, and before',
+        given(
+            _use(commands) if commands else None,
+            entries_table(result, entries),
+            _gaps(result),
+            texts.terms('best', 'development', 'held out', 'gap'),
+        ),
+        key='best',
+        short='Best',
+    )
+
+
+def _use(commands: PageCommands) -> Note:
+    others = ', '.join(commands.further_scenarios)
+    after = f'The cases also have {others}: give another one to --scenario.' if others else ''
+    return Note(
+        'Use it at once, in the folder of this page:', commands.compare, after, page_only=True
+    )
+
+
+def entries_table(result: TuningResult, entries: Mapping[str, FrontEntry]) -> Table:
+    """Return the figures of trials by label, in development cases and in held-out ones."""
+    goals = [*result.objectives, *result.constraints]
+    columns = [
+        Column('trial', number=False, weight=_NAME),
+        Column('cases', number=False, weight=_NAME),
+        *(Column(name, form='.4g', weight=Weight.USEFUL) for name in result.parameters),
+        *(
+            Column(goal.title, goal.unit, goal.form, missing='no run has a value')
+            for goal in goals
+        ),
+        Column('engaged', '%', '.1f', weight=Weight.USEFUL),
+        Column('keeps all', number=False, weight=Weight.USEFUL),
+    ]
+    rows = [
+        (label, cases, *entry.parameters.values(), *_values(result, figures))
+        for label, entry in entries.items()
+        for cases, figures in (('development', entry.development), ('held out', entry.held_out))
+        if figures
+    ]
+    chosen = [place for place, row in enumerate(rows) if row[0] == _best_label(result)]
+    return Table('', columns, rows, chosen)
+
+
+def _values(result: TuningResult, figures: Figures) -> Row:
+    keeps = figures.keeps_constraints
+    return (
+        *(figures.objectives[goal.name] for goal in result.objectives),
+        *(figures.constraints[goal.name] for goal in result.constraints),
+        100.0 * figures.engaged,
+        Cell('yes' if keeps else 'no', alarming=not keeps),
+    )
+
+
+def _gaps(result: TuningResult) -> Table:
+    columns = [
+        Column('figure of the best trial', number=False, weight=_NAME, symbols=True),
+        Column('a held-out run is the worse one', '%', '.0f', missing='too few runs have a value'),
+        Column('p', missing='too few runs have a value'),
+        Column('beyond chance', number=False),
+    ]
+    rows = [
+        (
+            figure_name(gap.name),
+            None if gap.worse is None else 100.0 * gap.worse,
+            None if gap.p_value is None else p_text(gap.p_value),
+            Cell('yes' if gap.differs else 'no', alarming=gap.differs),
+        )
+        for gap in result.gaps
+    ]
+    return Table('Development beside held out', columns, rows)
+
+
+def _front(result: TuningResult, study: 'Study | None') -> Section:
+    figures: list[Block] = [
+        Figure(
+            f'{goals[0].title} and {goals[1].title}',
+            partial(_svg, front_figure, result, study, *at),
+            'Trials over two objectives; the table below has the values of the front',
+        )
+        for at in combinations(range(len(result.objectives)), 2)
+        for goals in [[result.objectives[place] for place in at]]
+        if study
+    ]
+    entries = {_label(result, each): each for each in result.front}
+    if len(result.objectives) == 1:
+        return Section('Front', [])
+    return Section(
+        'Front',
+        [*figures, entries_table(result, entries), texts.terms('front')],
+        key='front',
+    )
+
+
+def _decides(result: TuningResult, study: 'Study | None') -> Section:
+    figures: list[Block] = [
+        Figure(
+            goal.title,
+            partial(_svg, slices_figure, study, goal, place),
+            f'{goal.title} of all trials over each parameter; grey break a constraint',
+        )
+        for place, goal in enumerate(result.objectives)
+        if study
+    ]
+    return Section(
+        'What decides',
+        given(
+            effects_table(result),
+            *figures,
+            Note(
+                'Grey: trials that break a constraint, over the runs until they ended. The '
+                'darker, the later. The highest tenth is not drawn.',
+                page_only=True,
+            ),
+            texts.terms('importance'),
+        ),
+        key='sensitivity',
+    )
+
+
+def effects_table(result: TuningResult) -> Table:
+    """Return how much each parameter decides each objective."""
+    columns = [
+        Column('objective', number=False, weight=_NAME, symbols=True),
+        Column('parameter', number=False, weight=_NAME),
+        Column('importance', form='.2f'),
+    ]
+    rows = [
+        (goal.title, name, share)
+        for goal in result.objectives
+        for name, share in result.importances[goal.name].items()
+    ]
+    return Table('', columns, rows)
+
+
+def _convergence(result: TuningResult, study: 'Study | None') -> Section | None:
+    if not study:
+        return None
+    figure = Figure(
+        '',
+        partial(_svg, progress_figure, result, study),
+        'What the trials have reached, over their numbers',
+    )
+    volume = Note(
+        'The hypervolume between the front and the worst values of the trials that keep all '
+        'constraints.',
+        page_only=True,
+    )
+    content: list[Block] = [figure] if len(result.objectives) == 1 else [figure, volume]
+    return Section('Convergence', content, key='convergence')
+
+
+def _trials(result: TuningResult) -> Section:
+    return Section(
+        'Trials',
+        given(
+            _counts('state', result.states),
+            _counts('ended or infeasible by', result.reasons),
+            Note(f'{result.runs} of {result.all_runs} runs were computed.'),
+            texts.terms('ended early'),
+        ),
+        key='trials',
+        page_only=True,
+    )
+
+
+def _counts(title: str, counts: Mapping[str, int]) -> Table:
+    columns = [Column(title, number=False, weight=_NAME), Column('trials', form='d')]
+    return Table('', columns, list(counts.items()))
+
+
+def _origin(
+    result: TuningResult, commands: PageCommands | None, facts: Mapping[str, str] | None
+) -> Section | None:
+    if not commands or not facts:
+        return None
+    found = {
+        **facts,
+        'held-out seed': f'{result.held_out_seed}, from the digests of the tuned files and of the '
+        'release',
+        'check it, in the folder of this page': commands.verify,
+    }
+    return Section(
+        'Origin',
+        [Terms(found, facts=True, commands=frozenset({'check it, in the folder of this page'}))],
+        key='origin',
+        page_only=True,
+    )
+
+
+def _svg(draw: 'Callable[..., MatplotlibFigure]', *of: object) -> bytes:
+    """Return a drawn figure as SVG, and close it."""
+    from matplotlib import pyplot
+
+    with chart_style():
+        figure = draw(*of)
+        drawn = chart_bytes(figure, 'svg')
+    pyplot.close(figure)
+    return drawn
+
+
+def _label(result: TuningResult, entry: FrontEntry) -> str:
+    return _best_label(result) if entry.number == result.best else str(entry.number)
+
+
+def _best_label(result: TuningResult) -> str:
+    return f'{result.best} (best)'

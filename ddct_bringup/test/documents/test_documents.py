@@ -1,0 +1,94 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""One document gives the tables of a terminal and a page of the same numbers."""
+
+import io
+import re
+
+from markupsafe import Markup
+
+from ddct_bringup.documents.document import (
+    Bar,
+    Cell,
+    Column,
+    Document,
+    Figure,
+    Note,
+    Remarks,
+    Section,
+    Table,
+    Terms,
+    given,
+)
+from ddct_bringup.documents.page import html_page
+from ddct_bringup.documents.terminal import print_document
+from ddct_plant.program.table import Weight
+
+COLUMNS = (
+    Column('controller', number=False, weight=Weight.IDENTIFYING),
+    Column('t_a', 's', '.2f', group='held out', missing='no run engaged'),
+    Column('engaged', form='.1f', group='held out'),
+)
+ROWS = (
+    ('pi', 1.25, Cell(90.0, below='of 10', bar=Bar(0.9, (0.6, 0.99)))),
+    ('mpc_<3>', None, Cell(-12.5, alarming=True, reason='of one run alone')),
+)
+
+
+def never() -> Markup:
+    raise AssertionError('the terminal draws no figure')
+
+
+def document(draw=never) -> Document:
+    return Document(
+        'Test',
+        'Test of <one>',
+        'two controllers',
+        [
+            Remarks('Before reading', ['a line to know']),
+            Section(
+                'Times',
+                [
+                    Table('', COLUMNS, ROWS, emphasised=[1]),
+                    Figure('t_a', draw, 'times'),
+                    Note('Run it:', 'ddct run --x "a b"'),
+                    Terms({'t_a': 'time of engagement'}),
+                    Section('More', [Table('folded', COLUMNS, ROWS)], folded=True),
+                ],
+                key='times',
+            ),
+        ],
+    )
+
+
+def test_the_terminal_has_the_tables_with_reasons_remarks_and_commands() -> None:
+    stream = io.StringIO()
+    print_document(document(), stream)
+    text = stream.getvalue()
+    assert text.startswith('a line to know\nTimes\n')
+    assert re.search(r'pi +1\.25 +90\.0 \(of 10\)', text)
+    assert re.search(r'mpc_<3> +- +-12\.5\*', text)
+    assert '-  no run engaged' in text
+    assert '*  of one run alone' in text
+    assert '  ddct run --x "a b"\n' in text
+    assert 'folded' not in text
+    assert 'time of engagement' not in text
+
+
+def test_the_page_has_every_number_and_reason_and_escapes_what_it_shows() -> None:
+    page = html_page(document(lambda: Markup('<svg id="drawn"></svg>')))
+    assert '<h1>Test of &lt;one&gt;</h1>' in page
+    assert '<a href="#times">Times</a>' in page
+    assert '<data value="1.25">1.25</data>' in page
+    assert '<span class="alarming"><data value="-12.5">−12.5</data></span>' in page
+    assert 'mpc_&lt;3&gt;' in page
+    assert 't<sub>a</sub>: no run engaged' in page
+    assert 'class="range" style="left:60.0%;right:1.0%"' in page
+    assert page.count('<svg id="drawn">') == 1
+    assert '<th scope="colgroup" colspan="2" class="of">held out</th>' in page
+    assert '<details><summary>More</summary>' in page
+    assert '<code>ddct run --x &#34;a b&#34;</code>' in page
+
+
+def test_blocks_without_content_are_left_out() -> None:
+    assert given(None, Table('', COLUMNS, []), Remarks('x', []), Section('y', [])) == []
