@@ -83,15 +83,18 @@ tune-extra: setup .venv/.tune
 # That colcon finds the tests of each package is a test of its own.
 TEST_FOLDERS := $(wildcard tests ddct_*/test)
 NIGHTLY := tests/nightly
+# A process that a hanging test has ended is not replaced: its successor would run that test again.
+WORKERS := --dist loadfile --max-worker-restart 0
 test: fmu tune-extra .venv/.site .venv/.test
-	@$(SOURCED) $(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder \
+	@$(SOURCED) $(BIN)/python -m pytest $(WORKERS) -n 3 --no-loadscope-reorder \
 	    -m 'not nightly' --ignore=$(NIGHTLY) $(TEST_FOLDERS)
 
 # What depends on the wall clock, whole gates and products of lists: before a release.
+LONG := -o faulthandler_timeout=3600
 test-nightly: fmu tune-extra .venv/.site .venv/.test
-	@$(SOURCED) $(BIN)/python -m pytest -n 2 --dist loadfile $(NIGHTLY)
-	@$(SOURCED) $(BIN)/python -m pytest -n 2 --dist loadfile -m nightly --ignore=$(NIGHTLY) $(TEST_FOLDERS)
-	@$(SOURCED) DDCT_SCHEDULES=1000 $(BIN)/python -m pytest -n 2 \
+	@$(SOURCED) $(BIN)/python -m pytest $(LONG) $(WORKERS) -n 2 $(NIGHTLY)
+	@$(SOURCED) $(BIN)/python -m pytest $(LONG) $(WORKERS) -n 2 -m nightly --ignore=$(NIGHTLY) $(TEST_FOLDERS)
+	@$(SOURCED) DDCT_SCHEDULES=1000 $(BIN)/python -m pytest $(LONG) $(WORKERS) -n 2 --dist load \
 	    ddct_plant/test/ticks ddct_plant/test/fail_safe
 
 # Rows of all packaged controllers on the benchmark's development cases, kept with a release: a minute or two.
@@ -101,7 +104,7 @@ benchmark-rows: setup
 
 # Tests without a marker; tests/plugins/tiers.py selects and checks them.
 test-fast: setup .venv/.tune
-	@$(SOURCED) $(BIN)/python -m pytest -q -n 2 --dist loadfile \
+	@$(SOURCED) $(BIN)/python -m pytest $(WORKERS) -q -n 2 \
 	    --fast-tier --ignore=$(NIGHTLY) $(TEST_FOLDERS)
 
 # Damaged inputs for every reader, minutes: SECONDS for each, at random and guided; READERS='bag log' tries only those.

@@ -61,7 +61,8 @@ def pytest_configure(config: pytest.Config) -> None:
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Refuse to run nightly tests together with those of another tier."""
     folder = config.rootpath / NIGHTLY
-    nightly = [item for item in items if folder in item.path.parents]
+    files = {path for path in {item.path for item in items} if folder in path.parents}
+    nightly = [item for item in items if item.path in files]
     if nightly and (config.getoption(OPTION) or len(nightly) < len(items)):
         raise pytest.UsageError(
             f'{nightly[0].nodeid} is nightly: run {NIGHTLY} alone, the others with '

@@ -109,7 +109,7 @@ class Browser:
         return visited
 
     def _run(self, coroutine: Coroutine[Any, Any, Any]) -> Any:
-        return asyncio.run(asyncio.wait_for(coroutine, 3 * WITHIN_S))
+        return asyncio.run(asyncio.wait_for(coroutine, 2 * WITHIN_S))
 
     def _listens(self) -> str:
         """Return the address of the debugging protocol, once it is there."""

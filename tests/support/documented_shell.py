@@ -42,7 +42,7 @@ def run_block(block: Block, workplace: Path, environment: dict[str, str]) -> Non
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
-        timeout=WITHIN_S,
+        timeout=3 * WITHIN_S,
         check=False,
     )
     assert done.returncode == 0, f'{script}\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}'

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from packaging.requirements import Requirement
+from waiting import WITHIN_S
 
 from ddct_plant.program.command_line import package_version
 from support.declared import PACKAGES, ROOT, declared_to_pip
@@ -62,6 +63,6 @@ def python(site: Path, place: Path, *arguments: str) -> 'subprocess.CompletedPro
         env={**environment, 'PYTHONPATH': str(site)},
         capture_output=True,
         text=True,
-        timeout=300.0,
+        timeout=WITHIN_S,
         check=False,
     )

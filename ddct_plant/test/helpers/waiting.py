@@ -5,8 +5,12 @@
 import time
 from collections.abc import Callable
 
-WITHIN_S = 300.0
-"""Bound of a wait, s: it ends a test that hangs, and is no claim about the speed of anything."""
+WITHIN_S = 90.0
+"""
+Bound of a wait, s: it ends a test that hangs, and is no claim about the speed of anything.
+
+It is below `faulthandler_timeout` of pyproject.toml, so that the test says what it waits for.
+"""
 
 
 def wait_until(condition: Callable[[], object], what: str, within_s: float = WITHIN_S) -> None:

@@ -43,7 +43,7 @@ def reader_script(tmp_path_factory):
     command = ['npm', 'ci', '--ignore-scripts', '--no-audit', '--no-fund', '--fetch-retries=1']
     try:
         result = subprocess.run(
-            command, cwd=folder, capture_output=True, text=True, timeout=WITHIN_S
+            command, cwd=folder, capture_output=True, text=True, timeout=3 * WITHIN_S
         )
     except subprocess.TimeoutExpired:
         pytest.skip('npm ci did not end in time: the package registry may be unreachable')
@@ -73,7 +73,10 @@ def by_topic(messages):
 def test_foxglove_libraries_read_the_same_values(bags, trajectory, reader_script):
     file = mcap_of(bags.write(trajectory))
     result = subprocess.run(
-        ['node', str(reader_script), str(file)], capture_output=True, text=True, timeout=WITHIN_S
+        ['node', str(reader_script), str(file)],
+        capture_output=True,
+        text=True,
+        timeout=3 * WITHIN_S,
     )
     assert result.returncode == 0, result.stderr
     lines = [json.loads(line) for line in result.stdout.splitlines()]

@@ -24,7 +24,7 @@ def python(site: Path, code: str) -> str:
         cwd=site.parent,
         capture_output=True,
         text=True,
-        timeout=WITHIN_S,
+        timeout=3 * WITHIN_S,
         check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr
@@ -43,7 +43,7 @@ def test_the_printed_commands_install_check_and_run_the_package_and_its_tests_pa
     subprocess.run(
         [*shlex.split(command), '--target', str(site)],
         capture_output=True,
-        timeout=WITHIN_S,
+        timeout=3 * WITHIN_S,
         check=True,
     )
     for line in (check, compare):

@@ -23,7 +23,7 @@ IGNORED = shutil.ignore_patterns('test', '__pycache__', '*.egg-info', 'build')
 def run(*command: str | Path) -> str:
     environment = {name: value for name, value in os.environ.items() if name != 'PYTHONPATH'}
     done = subprocess.run(
-        command, env=environment, capture_output=True, text=True, timeout=WITHIN_S, check=False
+        command, env=environment, capture_output=True, text=True, timeout=3 * WITHIN_S, check=False
     )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
