@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
+from ddct_bringup.api.shell.campaigns import ReplayDocument
 from ddct_bringup.benchmark.plan import BenchmarkPlan
 from ddct_bringup.benchmark.result import SCHEMA_VERSION as RESULT_VERSION
 from ddct_bringup.benchmark.result_types import Result, ResultWithTimes
@@ -21,10 +22,15 @@ from ddct_bringup.manifest.manifest import SCHEMA_VERSION as MANIFEST_VERSION
 from ddct_bringup.manifest.runs import RunsPlan
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.document import ScoresDocument
+from ddct_bringup.sweep.sweep import SCHEMA_VERSION as SWEEP_VERSION
+from ddct_bringup.sweep.sweep import SweepDocument
 from ddct_bringup.tuning.plan import TuningPlan
 from ddct_bringup.tuning.result import SCHEMA_VERSION as FRONT_VERSION
 from ddct_bringup.tuning.result import TuningResult
+from ddct_bringup.verification.document import FolderDocument, FoldersDocument
+from ddct_controllers.check.program import CheckReport
 from ddct_controllers.workflows.evidence_types import FrequencyEvidence
+from ddct_controllers.workflows.plant_on_paper import PlantOnPaper
 from ddct_plant.files.json_records import write_json
 from ddct_plant.files.json_schema import Schema, json_schema
 from ddct_plant.program.command_line import ProgramParser, run_program
@@ -76,6 +82,12 @@ DOCUMENTS: Mapping[str, Document] = {
     'update_times': Document('timing.json of benchmark', UpdateTimesFile),
     'tune': _of_version('front.json; --json of tune', TuningResult, FRONT_VERSION),
     'limit': Document('--json of limit', LimitDocument),
+    'sweep': _of_version('--json of sweep', SweepDocument, SWEEP_VERSION),
+    'replay': Document('--json of campaign replay', ReplayDocument),
+    'verify': Document('--json of verify, of one result', FolderDocument),
+    'verify_several': Document('--json of verify, of several results', FoldersDocument),
+    'check_controller': Document('--json of check-controller', CheckReport),
+    'plant': Document('--json of design plant', PlantOnPaper),
 }
 """Documents by the name of their schema."""
 

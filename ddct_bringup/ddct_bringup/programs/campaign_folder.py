@@ -84,7 +84,7 @@ def _replay(options: argparse.Namespace) -> int:
         layout=options.layout,
         overwrite=options.overwrite,
     )
-    if found.kept.scores.valid:
+    if found.kept.scores.valid and options.json != STDOUT:
         print(found.kept.path.parent, flush=True)
     if options.json:
         shell.write_json(options.json, found.document)

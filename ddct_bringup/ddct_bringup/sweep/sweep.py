@@ -11,28 +11,33 @@ from typing import Any
 
 import pyarrow as pa
 
+from ddct_bringup.bag.run_facts import RunConditions, ShiftConditions
 from ddct_bringup.campaign.columns import runs_table, schema_over
 from ddct_bringup.campaign.rows import ScoredRow
 from ddct_bringup.campaign.run_set import RunSet
 from ddct_bringup.campaign.scored import scored_runs
 from ddct_bringup.metrics.metric import Metric
 from ddct_bringup.run.run_base import RunBase
-from ddct_bringup.scores.document import run_entry
+from ddct_bringup.scores.document import (
+    NoConditions,
+    ScoresEntry,
+    ShiftEntry,
+    UnreadableEntry,
+    run_entry,
+)
 from ddct_bringup.scores.run_table import CONTROLLER, STATE, RunColumn, metric
 from ddct_bringup.scores.shift_conditions import shift_conditions
 from ddct_bringup.sweep.axis import MOST, Axis, value_text
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.registry import Chosen, controller_label, controller_spec
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.files.json_records import to_json
+from ddct_plant.files.json_records import Inline
 from ddct_plant.program.table import Column, Table, Weight, table_of
 from ddct_plant.scenario.differences import scenario_title
 from ddct_plant.scenario.settings import RunSettings
 
 SCHEMA_VERSION = 1
 """Schema version of the output of `ddct sweep --json`."""
-OVER = 'over'
-"""Key in a run's entry of the values by the keys of the axes."""
 
 
 @dataclass(frozen=True)
@@ -113,27 +118,71 @@ class Sweep:
         return scored_runs(self.run_set, self.limits)
 
 
-def sweep_document(sweep: Sweep, runs: Sequence[ScoredRow]) -> Mapping[str, Any]:
-    """
-    Return the document of `--json`: the axes, the limits, and a row per run.
+@dataclass(frozen=True)
+class SweptRun:
+    """A run at one point; other keys as in an entry of `scores.json`."""
 
-    A row is the entry of `scores.json`, with the run's values under `OVER` instead of a bag.
-    """
-    return {
-        'schema_version': SCHEMA_VERSION,
-        'over': [
-            {'key': axis.key, 'unit': axis.unit, 'values': list(axis.values)}
-            for axis in sweep.axes
-        ],
-        'controllers': [controller_label(each) for each in sweep.controllers],
-        'limits': sweep.limits.origin,
-        'rows': [_row(run) for run in runs],
-    }
+    over: Mapping[str, Any]
+    """Values by the keys of the axes."""
+    conditions: Inline[RunConditions]
+    scores: Inline[ScoresEntry]
 
 
-def _row(run: ScoredRow) -> Mapping[str, Any]:
-    entry = to_json(run_entry(run.scores))
-    return {OVER: run.varied, **{key: value for key, value in entry.items() if key != 'bag'}}
+@dataclass(frozen=True)
+class SweptShift:
+    """A gear shift at one point; other keys as in an entry of `scores.json`."""
+
+    over: Mapping[str, Any]
+    """Values by the keys of the axes."""
+    conditions: Inline[RunConditions]
+    shift: Inline[ShiftConditions]
+    scores: Inline[ScoresEntry]
+
+
+@dataclass(frozen=True)
+class ImpossibleSweptRun:
+    """A point at which no run can be built; other keys as in an entry of `scores.json`."""
+
+    over: Mapping[str, Any]
+    """Values by the keys of the axes."""
+    conditions: Inline[NoConditions]
+    scores: Inline[ScoresEntry]
+
+
+SweptEntry = SweptRun | SweptShift | ImpossibleSweptRun
+
+
+@dataclass(frozen=True)
+class SweepDocument:
+    """Document of `sweep --json`."""
+
+    schema_version: int
+    over: Sequence[Axis]
+    controllers: Sequence[str]
+    limits: Mapping[str, str | int]
+    """Origin of the limits by which the runs were judged."""
+    rows: Sequence[SweptEntry]
+    """A row for each run."""
+
+
+def sweep_document(sweep: Sweep, runs: Sequence[ScoredRow]) -> SweepDocument:
+    """Return the document of `--json`: the axes, the limits, and a row per run."""
+    return SweepDocument(
+        SCHEMA_VERSION,
+        sweep.axes,
+        [controller_label(each) for each in sweep.controllers],
+        sweep.limits.origin,
+        [_row(run) for run in runs],
+    )
+
+
+def _row(run: ScoredRow) -> SweptEntry:
+    entry = run_entry(run.scores)
+    if isinstance(entry, UnreadableEntry):
+        return ImpossibleSweptRun(run.varied, entry.conditions, entry.scores)
+    if isinstance(entry, ShiftEntry):
+        return SweptShift(run.varied, entry.conditions, entry.shift, entry.scores)
+    return SweptRun(run.varied, entry.conditions, entry.scores)
 
 
 def sweep_table(sweep: Sweep, runs: Sequence[ScoredRow], metrics: Sequence[Metric]) -> Table:

@@ -3,11 +3,10 @@
 """Verify a result: its files first, then everything again, then file against file."""
 
 import tempfile
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 from ddct_bringup.manifest.file_states import SAME, UNLISTED, FileState, file_states
 from ddct_bringup.manifest.manifest import MANIFEST, Manifest, read_manifest, result_around
@@ -16,9 +15,8 @@ from ddct_bringup.run.output_folder import PARTIAL
 from ddct_bringup.verification.files import FileComparison
 from ddct_bringup.verification.repetition import repeat
 from ddct_bringup.verification.result import RepetitionResult
-from ddct_bringup.verification.states import BOUND, DIFFERENT, NOT_REPEATED, SAME_BITS, SAME_WITHIN
+from ddct_bringup.verification.states import DIFFERENT, NOT_REPEATED, SAME_BITS, SAME_WITHIN
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.json_records import to_json
 from ddct_plant.program.arithmetic import arithmetic
 
 
@@ -132,25 +130,3 @@ def _differences(manifest: Manifest) -> list[str]:
     if manifest.arithmetic is None:
         return [*found, 'machines or versions that differ among its parts']
     return found + manifest.arithmetic.differences(arithmetic())
-
-
-def entry_of(found: Verification) -> Mapping[str, Any]:
-    """Return what was found of a result as JSON."""
-    return {
-        'folder': str(found.folder),
-        'kind': found.manifest.kind,
-        'same': found.same,
-        'state': found.state,
-        'error': found.error or None,
-        'environment': to_json(_environment(found.manifest)),
-        'environment_here': to_json({**to_json(CodeOrigin.here()), 'arithmetic': arithmetic()}),
-        'environment_differences': found.environment_differences,
-        'bound': BOUND if found.environment_differences else 0.0,
-        'files': [asdict(file) for file in found.files],
-        'by_digest': list(found.by_digest),
-        'runs': [run.entry() for run in found.runs],
-    }
-
-
-def _environment(manifest: Manifest) -> Mapping[str, Any]:
-    return {**to_json(manifest.origin), 'arithmetic': manifest.arithmetic}

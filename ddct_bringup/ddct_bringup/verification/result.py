@@ -20,8 +20,8 @@ class RepetitionResult:
     state: str
     first_difference: Mapping[str, Any] | None = None
     """Place of the first difference with both values, or its `reason`; None in another state."""
-    largest: float = 0.0
-    """Largest difference, relative as `BOUND`; 0 for equal bits."""
+    largest_difference: float | None = 0.0
+    """Largest difference, relative as `BOUND`; 0 for equal bits, None where it is infinite."""
     note: str = ''
     """Reason why it was not repeated, or what else to know of it."""
 
@@ -32,7 +32,8 @@ class RepetitionResult:
         """Return the result of a comparison."""
         first = comparison.first(same_environment=same_environment)
         state = comparison.state(same_environment=same_environment)
-        return cls(run, state, first.entry() if first else None, comparison.largest, note)
+        largest = comparison.largest if math.isfinite(comparison.largest) else None
+        return cls(run, state, first.entry() if first else None, largest, note)
 
     @classmethod
     def failed(cls, run: str, reason: object, note: str = '') -> 'RepetitionResult':
@@ -43,14 +44,3 @@ class RepetitionResult:
     def not_repeated(cls, run: str, note: str) -> 'RepetitionResult':
         """Return the result of what was not made again, or not compared."""
         return cls(run, NOT_REPEATED, note=note)
-
-    def entry(self) -> Mapping[str, Any]:
-        """Return the result as JSON; a largest difference that is infinite is None."""
-        largest = self.largest if math.isfinite(self.largest) else None
-        return {
-            'run': self.run,
-            'state': self.state,
-            'first_difference': self.first_difference,
-            'largest_difference': largest,
-            'note': self.note,
-        }

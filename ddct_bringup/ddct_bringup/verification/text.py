@@ -78,7 +78,7 @@ def _detail(run: RepetitionResult) -> str:
 
 def _difference(run: RepetitionResult) -> str:
     if run.first_difference is None:
-        return f'at most {run.largest:.2g}' if run.largest else ''
+        return f'at most {run.largest_difference:.2g}' if run.largest_difference else ''
     first = dict(run.first_difference)
     reason = first.pop('reason', '')
     values = [f'{key} {first.pop(key)!r}' for key in ('recorded', 'repeated') if key in first]

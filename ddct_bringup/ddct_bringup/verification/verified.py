@@ -2,13 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Verify every result below a path, and put what was found into one document."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from ddct_bringup.run.output_folder import locked_folders
-from ddct_bringup.verification.folder import Verification, entry_of, results_in, verified
+from ddct_bringup.verification.document import (
+    FolderDocument,
+    FoldersDocument,
+    document_of,
+    document_of_all,
+)
+from ddct_bringup.verification.folder import Verification, results_in, verified
 from ddct_bringup.verification.states import DIFFERENT, NOT_REPEATED, SAME_BITS, SAME_WITHIN
 
 _WORST = (DIFFERENT, NOT_REPEATED, SAME_WITHIN)
@@ -27,19 +32,11 @@ class VerifiedResults:
         return next((each for each in _WORST if each in states), SAME_BITS)
 
     @property
-    def document(self) -> Mapping[str, Any]:
-        """Document of `--json`; with several folders, paths and runs begin with the folder."""
+    def document(self) -> FolderDocument | FoldersDocument:
+        """Document of `--json`."""
         if len(self.results) == 1:
-            return entry_of(self.results[0])
-        folders = [dict(entry_of(each)) for each in self.results]
-        files, runs = [], []
-        for each in folders:
-            name = each['folder']
-            files += [{**file, 'path': f'{name}/{file["path"]}'} for file in each.pop('files')]
-            runs += [{**run, 'run': f'{name}: {run["run"]}'} for run in each.pop('runs')]
-        state = self.state
-        same = state != DIFFERENT
-        return {'same': same, 'state': state, 'files': files, 'runs': runs, 'folders': folders}
+            return document_of(self.results[0])
+        return document_of_all(self.results, self.state, same=self.state != DIFFERENT)
 
 
 def verified_results(path: Path, workers: int | None) -> VerifiedResults:

@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The bag of a row has the scores of the row, and another bag is detected."""
 
+import json
 from pathlib import Path
 
 import pytest
+from by_schema import require_schema
 from in_this_process import in_this_process
 from printed_commands import printed_commands, run_printed
 
@@ -103,6 +105,7 @@ def test_every_row_of_a_campaign_replays_to_the_last_bit(
     for index in ('0', '1'):
         assert replay(folder, '--index', index, '--overwrite', '--json', '-') == 0
         told = capfd.readouterr()
+        require_schema('replay', json.loads(told.out))
         assert f'run {index}: its {len(COMPARED)} figures and words are those of' in told.err
         how = 'bit for bit' if '"path": "serial"' in told.out else 'to 1e-09'
         assert f'are those of the row, {how}' in told.err

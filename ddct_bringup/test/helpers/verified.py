@@ -15,6 +15,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
+from by_schema import require_schema
 
 from ddct_bringup.campaign.conduct import RESULTS, SHARDS
 from ddct_bringup.campaign_report import folder
@@ -142,7 +143,10 @@ def verified(
     capfd.readouterr()
     code = verify.main([str(folder), '--json', '-', *options])
     printed = capfd.readouterr()
-    return code, json.loads(printed.out) if printed.out else {}, printed.err
+    document = json.loads(printed.out) if printed.out else {}
+    if document:
+        require_schema('verify_several' if 'folders' in document else 'verify', document)
+    return code, document, printed.err
 
 
 def states(document: dict[str, Any]) -> dict[str, str]:

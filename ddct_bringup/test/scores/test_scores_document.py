@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from by_schema import require_schema
 from made_scores import made_limit, made_scores
 
 from ddct_bringup.bag.run_facts import ShiftConditions
@@ -53,6 +54,7 @@ def read(folder: Path, document: Any) -> list[ScoredRun]:
 
 def test_scores_are_read_as_they_were_written(tmp_path: Path) -> None:
     runs = [RUN, run_without_score('broken/pi', None, 'unfinished')]
+    require_schema('scores', content(*runs))
     found = read(tmp_path, content(*runs))
     assert content(*found) == content(*runs)
     assert replace(found[0], facts=None) == replace(RUN, facts=None)
@@ -95,7 +97,9 @@ def test_a_gear_shift_is_read_as_it_was_written(tmp_path: Path) -> None:
     entry = to_json(run_entry(RUN))
     assert isinstance(run_entry(RUN), RunEntry)
     shift = {'off_going_wear_gain': 0.9, 'handover': 'model'}
-    found = from_json(ScoresDocument, {**content(), 'runs': [{**entry, **shift}]}, 'x')
+    document = {**content(), 'runs': [{**entry, **shift}]}
+    require_schema('scores', document)
+    found = from_json(ScoresDocument, document, 'x')
     (read_entry,) = found.runs
     assert isinstance(read_entry, ShiftEntry)
     assert read_entry.shift == ShiftConditions(0.9, 'model')

@@ -6,6 +6,7 @@ import csv
 import json
 
 import pytest
+from by_schema import require_schema
 from refusals import refused
 
 from ddct_bringup import api
@@ -64,6 +65,7 @@ def test_rows_are_those_of_the_runs_alone_with_what_belongs_to_the_key(swept):
 
 def test_the_document_has_the_varied_keys(swept):
     document = swept[1]
+    require_schema('sweep', document)
     assert document['over'] == [
         {'key': 'vehicle.mass_kg', 'unit': 'kg', 'values': [1200.0, 1800.0]}
     ]

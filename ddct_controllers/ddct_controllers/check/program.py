@@ -4,7 +4,7 @@
 
 import sys
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import dataclass
 
 from ddct_controllers.check.checks import FAIL, Outcome, check_controller
 from ddct_plant.files.output_file import require_place
@@ -27,6 +27,14 @@ examples:
   ddct check-controller mine --set controllers.mine.gain=0.2"""
 
 
+@dataclass(frozen=True)
+class CheckReport:
+    """Document of `check-controller --json`."""
+
+    controller: str
+    checks: Sequence[Outcome]
+
+
 def main(argv: list[str] | None = None) -> int:
     """Run the program and return its exit code."""
     return run_program(PROGRAM, _check, argv)
@@ -42,7 +50,7 @@ def _check(argv: list[str]) -> int:
     settings = KnownSettings(scenario_of(options, options.overrides))
     print(f'{PROGRAM}: trying {options.controller}', file=sys.stderr, flush=True)
     outcomes = check_controller(options.controller, settings)
-    report = {'controller': options.controller, 'checks': [asdict(each) for each in outcomes]}
+    report = CheckReport(options.controller, outcomes)
     show_and_write(options.json, report, lambda: _print(outcomes))
     failed = [each.name for each in outcomes if each.state == FAIL]
     if failed:

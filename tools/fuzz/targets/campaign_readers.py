@@ -76,6 +76,6 @@ def _compared(again: object) -> Read:
     def read(file: Path) -> object:
         comparison = Comparison()
         comparison.add_nested('', recorded_json(file), again)
-        return RepetitionResult.of(file.name, comparison, same_environment=True).entry()
+        return RepetitionResult.of(file.name, comparison, same_environment=True)
 
     return read

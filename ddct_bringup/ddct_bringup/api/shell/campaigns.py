@@ -68,9 +68,21 @@ class Replay:
     kept: ScoredRecording
 
     @property
-    def document(self) -> dict[str, Any]:
+    def document(self) -> 'ReplayDocument':
         """Document of `--json`."""
-        return {'index': self.index, 'path': self.path, 'differences': self.differences}
+        return ReplayDocument(self.index, self.path, self.differences)
+
+
+@dataclass(frozen=True)
+class ReplayDocument:
+    """Document of `campaign replay --json`."""
+
+    index: int
+    """Index of the row."""
+    path: str
+    """Path of the row: step by step, or vectorised."""
+    differences: list[str]
+    """What differs from the row, a line each; none where it came out again."""
 
 
 def replay_row(
