@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from by_schema import require_schema
 from conformance import right_controllers
 from support.complaints import assert_one_line
 from support.third_party import install
@@ -209,7 +210,9 @@ def test_an_entry_point_that_was_added_after_the_installation_is_named(
 def report_of(capfd: pytest.CaptureFixture[str], code: int, *arguments: str) -> Any:
     assert program.main([*arguments, '--json', '-']) == code
     output = capfd.readouterr()
-    return json.loads(output.out), output.err
+    report = json.loads(output.out)
+    require_schema('check_controller', report)
+    return report, output.err
 
 
 def test_the_program_reports_every_check_of_a_controller_in_a_file(
