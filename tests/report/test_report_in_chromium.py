@@ -12,10 +12,10 @@ from samples import sampled
 from support.runs import plan, record
 
 from ddct_bringup.bag.trajectory_bag import write_trajectory
+from ddct_bringup.documents.palette import looks
 from ddct_bringup.programs.report import main
 from ddct_bringup.run.description import custom_data
 from ddct_bringup.run.headless import run_headless
-from ddct_controllers.design.drawing.line_looks import DARK_COLOURS, controller_look
 
 pytestmark = [
     pytest.mark.browser,
@@ -124,7 +124,7 @@ def test_a_yardstick_has_its_star_and_hollow_point_and_the_withheld_torque_its_s
     expected = [['ls8', False], ['torque_estimator', True]]
     assert sorted(visited.values[0]) == sorted(visited.values[1]) == expected
     order = [name for name, _ in visited.values[0]]
-    assert visited.values[2] == [DARK_COLOURS[controller_look(name).colour] for name in order]
+    assert visited.values[2] == [look.colour for look in looks(2)]
     assert [most > 10.0 for most in visited.values[3]] == [n != 'ls8' for n in order]
     assert visited.values[4] <= PHONE_PX
     assert visited.values[5] == []
@@ -324,7 +324,7 @@ def test_paper_gets_light_charts_even_from_a_dark_page(page: Path, visit: Visito
         return [inked, lines.every((colour) => found.has(colour))];
       });
     })"""
-    lines = [controller_look(name).light for name in CONTROLLERS]
+    lines = [look.colour for look in looks(len(CONTROLLERS))]
     light = f'window.light = {json.dumps(lines)}'
     after = """[document.querySelectorAll('.paper canvas').length,
       document.documentElement.dataset.theme ?? 'auto']"""

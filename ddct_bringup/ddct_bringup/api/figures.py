@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Draw runs, campaigns and the figures of the thesis with matplotlib."""
+"""Figures of runs, of campaigns and of the thesis, for notebooks, papers and slides."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ddct_bringup.api.result import Run, as_runs
 from ddct_bringup.campaign.plan import RecordedCampaign
-from ddct_bringup.campaign_report.distributions_figure import distributions_figure
+from ddct_bringup.campaign_report.distributions_chart import distributions_chart
 from ddct_bringup.campaign_report.folder import scenario_of
 from ddct_bringup.campaign_report.reading import read_table, results_of
+from ddct_bringup.documents.chart import Axis, Chart, Line, Panel
+from ddct_bringup.documents.chart_files import matplotlib_figure
+from ddct_bringup.documents.palette import looks
 from ddct_bringup.report.chart_signals import ChartSignal
 from ddct_bringup.report.charts import chart_signals_of
 from ddct_bringup.report.run_labels import common_conditions, run_labels, varied_conditions
 from ddct_bringup.reproduction.figures.command import collect_figures, require_drawn
-from ddct_controllers.design.drawing.chart_style import chart_style, controllers_text, headed
-from ddct_controllers.design.drawing.charts import label_time_axis
-from ddct_controllers.design.drawing.line_looks import looks_of
-from ddct_controllers.design.drawing.line_styles import look_style
+from ddct_controllers.design.drawing.chart_style import chart_style, controllers_text
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import require_known
 from ddct_plant.scenario.differences import scenario_title
@@ -26,39 +26,25 @@ from ddct_plant.scenario.differences import scenario_title
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_WIDTH_IN, _CHART_IN, _TITLE_IN = 8.0, 2.6, 0.6
-
 
 def figure(
     runs: Run | Iterable[Run], quantities: Sequence[str] = ('w_d', 'w_sr', 'A_x')
 ) -> 'Figure':
     """
-    Return a figure with a chart per quantity over time, all runs in each.
+    Return a figure of matplotlib with a chart per quantity over time, all runs in each.
 
-    The title names the controllers, the varied conditions and the common ones: scenario,
-    architecture, clutch, wear gain. The quantities are the keys of the report's charts, such as
-    w_d, error, w_sr, A_x, C_f_request; with a clutch that sticks also `temperature` and others.
-    Raise ParameterError for another.
+    Its `savefig` writes PNG, SVG or PDF without a browser. The title names the controllers, the
+    varied conditions and the common ones: scenario, architecture, clutch, wear gain. The
+    quantities are the keys of the report's charts, such as w_d, error, w_sr, A_x, C_f_request;
+    with a clutch that sticks also `temperature` and others. Raise ParameterError for another.
     """
-    from matplotlib.figure import Figure
-
     shown = as_runs(runs)
     if not shown or not quantities:
         raise ParameterError('a figure needs a run and a quantity')
-    labels = run_labels([each.scores for each in shown])
-    looks = looks_of(each.scores.label for each in shown)
-    end_s = max(each.trajectory.time_s[-1] for each in shown)
-    with chart_style():
-        drawing = Figure(figsize=(_WIDTH_IN, _CHART_IN * len(quantities) + _TITLE_IN))
-        drawing.suptitle(_title(shown))
-        charts = drawing.subplots(len(quantities), squeeze=False)[:, 0]
-        for axes, key in zip(charts, quantities, strict=True):
-            for each, label, look in zip(shown, labels, looks, strict=True):
-                quantity = _quantity(each, key)
-                values = quantity.values(each.trajectory)
-                axes.plot(each.trajectory.time_s, values, label=label, **look_style(look))
-            label_time_axis(axes, f'{key}, {quantity.unit}', (0.0, end_s))
-    return drawing
+    across = Axis('time, s', (0.0, max(each.trajectory.time_s[-1] for each in shown)))
+    panels = tuple(_panel(shown, key, across) for key in quantities)
+    title, conditions = _title(shown)
+    return matplotlib_figure(Chart(title, panels, conditions))
 
 
 def campaign_figure(folder: str | Path) -> 'Figure':
@@ -70,8 +56,7 @@ def campaign_figure(folder: str | Path) -> 'Figure':
     """
     recorded = RecordedCampaign.read(Path(folder))
     results = results_of(recorded, read_table(Path(folder), recorded))
-    with chart_style():
-        return distributions_figure(results, scenario_of(recorded))
+    return matplotlib_figure(distributions_chart(results, scenario_of(recorded)))
 
 
 class ThesisDrawing(NamedTuple):
@@ -95,8 +80,19 @@ def thesis_figure(number: str) -> ThesisDrawing:
         return ThesisDrawing(*figures[number].draw())
 
 
-def _title(runs: Sequence[Run]) -> str:
-    """Return the title: controllers, varied conditions, and below them the common conditions."""
+def _panel(runs: Sequence[Run], key: str, across: Axis) -> Panel:
+    """Return the panel of a quantity: a line for each run."""
+    labels = run_labels([each.scores for each in runs])
+    signals = [_signal(each, key) for each in runs]
+    lines = (
+        Line(each.trajectory.time_s, signal.values(each.trajectory), look, label)
+        for each, signal, look, label in zip(runs, signals, looks(len(runs)), labels, strict=True)
+    )
+    return Panel(tuple(lines), across, Axis(f'{key}, {signals[0].unit}'))
+
+
+def _title(runs: Sequence[Run]) -> tuple[str, str]:
+    """Return the title, controllers and varied conditions, and the common conditions."""
     scored = [run.scores for run in runs]
     names = dict.fromkeys(each.label for each in scored)
     scenarios = dict.fromkeys(
@@ -107,11 +103,10 @@ def _title(runs: Sequence[Run]) -> str:
     varied = ['scenario', *varied] if len(scenarios) > 1 else varied
     over = f' over {", ".join(varied)}' if varied else ''
     shared = ', '.join(common_conditions(scored))
-    title = f'{controllers_text(list(names))}{over}'
-    return headed(title, f'{"; ".join(scenarios)}; {shared}', _WIDTH_IN)
+    return f'{controllers_text(list(names))}{over}', f'{"; ".join(scenarios)}; {shared}'
 
 
-def _quantity(run: Run, key: str) -> ChartSignal:
+def _signal(run: Run, key: str) -> ChartSignal:
     known = {quantity.key: quantity for quantity in chart_signals_of(run.trajectory)}
     require_known([key], known, 'quantity')
     return known[key]

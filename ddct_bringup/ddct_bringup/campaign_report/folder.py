@@ -12,7 +12,7 @@ from markupsafe import Markup
 from ddct_bringup.campaign.keys import COMMON, SCENARIO
 from ddct_bringup.campaign.plan import RecordedCampaign
 from ddct_bringup.campaign_report import texts
-from ddct_bringup.campaign_report.distributions_figure import distributions_figure
+from ddct_bringup.campaign_report.distributions_chart import distributions_chart
 from ddct_bringup.campaign_report.map_types import MapScale
 from ddct_bringup.campaign_report.maps import FAILED_SHARE, campaign_maps
 from ddct_bringup.campaign_report.printed_summary import MAIN
@@ -20,6 +20,7 @@ from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.results import Results
 from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.campaign_report.summary_types import Summary
+from ddct_bringup.documents.chart_files import matplotlib_figure
 from ddct_bringup.documents.page_parts import (
     DOCUMENTS,
     MARKER,
@@ -126,7 +127,7 @@ def campaign_page(
 def _distributions(results: Results, scenario: str) -> str:
     """Return the figure of the distributions, encoded for a data URI."""
     with chart_style():
-        figure = distributions_figure(results, scenario)
+        figure = matplotlib_figure(distributions_chart(results, scenario))
         return b64encode(chart_bytes(figure, 'svg')).decode()
 
 

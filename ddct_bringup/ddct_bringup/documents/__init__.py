@@ -1,3 +1,3 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Documents of tables, figures and notes, for the terminal and as pages."""
+"""Documents of tables, charts and notes, for the terminal and as pages."""

@@ -83,7 +83,7 @@ def _sweep(argv: list[str]) -> int:
     for text in shell.sweep_notes(runs):
         shell.print_note(text, stream)
     if options.figure:
-        shell.write_sweep_figure(sweep, runs, metrics, Path(options.figure))
+        shell.write_chart(shell.sweep_chart(sweep, runs, metrics), Path(options.figure))
     failed = sum(not run.scores.valid for run in runs)
     if failed:
         _complain(f'{failed} of {len(runs)} runs are not valid: the lines above say why')

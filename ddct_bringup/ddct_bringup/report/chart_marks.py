@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.documents.palette import NEUTRAL, LineLook
 from ddct_bringup.metrics.shift.course import ShiftCourse
 from ddct_bringup.report.chart_signals import ChartSignal
-from ddct_controllers.design.drawing.line_looks import LineLook
 from ddct_plant.base.timebase import steps_in, time_of_step
 from ddct_plant.models.driveline import LOCK, RELEASE
 
@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 _MARK_SPACING = 0.12
 """Distance between the marks of a line, as a share of the run."""
 EVENT_MARKERS = {LOCK: 'triangle', RELEASE: 'inverted_triangle'}
-NEUTRAL = '#808080'
-"""Colour that is readable on a light and on a dark page."""
 
 
 @dataclass(frozen=True)
@@ -88,10 +86,9 @@ def mark_line(
         marker=run.look.mark,
         size=8,
         line_width=1.5,
-        line_color=run.look.light,
-        fill_color=run.look.light if run.look.filled else None,
+        color=run.look.colour,
     )
-    switch(marks, [run], fill=run.look.filled)
+    switch(marks, [run])
 
 
 def mark_thesis(chart: 'figure', runs: Sequence[ChartRun]) -> None:
@@ -104,7 +101,7 @@ def mark_thesis(chart: 'figure', runs: Sequence[ChartRun]) -> None:
                 marker='diamond',
                 size=13,
                 fill_color=None,
-                line_color=run.look.light,
+                line_color=run.look.colour,
                 line_width=2,
             )
             switch(mark, [run])
@@ -132,7 +129,7 @@ def mark_events(chart: 'figure', runs: Sequence[ChartRun], side: str = '') -> No
     """Mark locks and releases of a clutch where its slip is zero."""
     for run in runs:
         if getattr(run.trajectory, f'{side}clutch_phase') is not None:
-            for mark in draw_events(chart, run.trajectory, 0.0, run.look.light, side):
+            for mark in draw_events(chart, run.trajectory, 0.0, run.look.colour, side):
                 switch(mark, [run])
 
 
@@ -160,6 +157,6 @@ def draw_events(
 
 
 def switch(mark: 'DataRenderer', runs: Sequence[ChartRun], **tag: Any) -> None:
-    """Let the page switch a mark with its runs; its tag has their colour, or None if neutral."""
+    """Let the page switch a mark with its runs, whose positions are in its tag."""
     mark.visible = any(run.shown for run in runs)
-    mark.tags = [{'runs': [run.index for run in runs], 'colour': runs[0].look.colour, **tag}]
+    mark.tags = [{'runs': [run.index for run in runs], **tag}]

@@ -2,15 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Time charts of the page: one per signal with all runs, on one time axis."""
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ddct_bringup.bag.run_facts import MEASURED
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.documents.bokeh_charts import PageCharts, styled_figure
+from ddct_bringup.documents.palette import NEUTRAL
 from ddct_bringup.report.chart_marks import (
-    NEUTRAL,
     ChartRun,
     mark_events,
     mark_feedback,
@@ -42,9 +43,8 @@ _SHADE = 0.2
 """Opacity of the area between the demand and an engine torque below it."""
 
 
-def chart_document(runs: Sequence[ChartRun]) -> tuple[Mapping[str, object], dict[str, str]]:
-    """Return the Bokeh document as JSON, and the id of each chart in it."""
-    from bokeh.document import Document
+def time_charts(runs: Sequence[ChartRun], page: PageCharts) -> list[str]:
+    """Add the charts to a page at the places `chart-KEY`, and return their keys."""
     from bokeh.models import Range1d
     from bokeh.models.annotations import Span
 
@@ -73,31 +73,9 @@ def chart_document(runs: Sequence[ChartRun]) -> tuple[Mapping[str, object], dict
         chart = _chart(LANES, '', time_axis, cursor, runs)
         draw_lanes(chart, sticking)
         charts[LANES] = chart
-    document = Document()
-    with document.models.freeze():  # or it would be searched for models after each chart
-        for chart in charts.values():
-            document.add_root(chart)
-    ids: dict[str, str] = {}
-    content = _with_fixed_ids(document.to_json(deferred=False), ids)
-    return content, {key: ids[str(charts[key].id)] for key in charts}
-
-
-def _with_fixed_ids(content: Any, ids: dict[str, str]) -> Any:
-    """
-    Return the JSON of a document with ids that count its models, so that it comes out again.
-
-    Bokeh's own count all models of the process. `ids` gets the new ones by the old.
-    """
-    if isinstance(content, Mapping):
-        return {
-            key: ids.setdefault(value, f'p{len(ids)}')
-            if key == 'id' and isinstance(value, str)
-            else _with_fixed_ids(value, ids)
-            for key, value in content.items()
-        }
-    if isinstance(content, (list, tuple)):
-        return [_with_fixed_ids(each, ids) for each in content]
-    return content
+    for key, chart in charts.items():
+        page.add_figure(f'chart-{key}', chart)
+    return list(charts)
 
 
 def charted_signals(runs: Sequence[ChartRun]) -> list[ChartSignal]:
@@ -157,29 +135,15 @@ def _chart(
     key: str, unit: str, time_axis: 'Range1d', cursor: 'Span', runs: Sequence[ChartRun]
 ) -> 'figure':
     from bokeh.models import CrosshairTool, DataRange1d
-    from bokeh.plotting import figure
 
-    chart = figure(
-        height=_HEIGHT_PX,
-        sizing_mode='stretch_width',
+    chart = styled_figure(
+        _HEIGHT_PX,
         x_range=time_axis,
         y_range=DataRange1d(only_visible=True),
         x_axis_label='time, s',
         y_axis_label=unit,
-        tools='xbox_zoom,xpan,xwheel_zoom,reset,save',
-        active_drag='xbox_zoom',
-        active_scroll=None,
-        window_axis='x',
-        background_fill_color=None,
-        border_fill_color=None,
-        outline_line_color=None,
-        min_border=6,
         name=key,
     )
-    chart.toolbar.logo = None
-    chart.xgrid.grid_line_color = None
-    chart.axis.axis_label_text_font_style = 'normal'
-    chart.axis.minor_tick_line_color = None
     chart.add_tools(CrosshairTool(overlay=cursor))
     mark_window(chart, runs[0].facts)
     mark_feedback(chart, runs)
@@ -194,7 +158,7 @@ def _line(
         quantity.key,
         source=source,
         line_width=1.8,
-        line_color=run.look.light,
+        line_color=run.look.colour,
         line_dash=list(run.look.dash),
         name=run.label,
     )
@@ -208,7 +172,7 @@ def _line(
             source=source,
             line_width=1.0,
             line_alpha=FAINT,
-            line_color=run.look.light,
+            line_color=run.look.colour,
         )
         switch(limit, [run], alpha=FAINT)
 
@@ -232,7 +196,7 @@ def _draw_shared(
             line_color=NEUTRAL,
             line_dash=[5, 4],
         )
-        switch(line, members, colour=None)
+        switch(line, members)
 
 
 def _shade_withheld(
@@ -247,7 +211,7 @@ def _shade_withheld(
             'C_m',
             'with_withheld',
             source=source,
-            fill_color=run.look.light,
+            fill_color=run.look.colour,
             fill_alpha=_SHADE,
         )
         switch(area, [run], area=True, alpha=_SHADE)

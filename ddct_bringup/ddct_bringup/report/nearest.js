@@ -79,6 +79,6 @@ function showNearest(views) {
     const room = document.documentElement.clientWidth - tip.offsetWidth - 8;
     tip.style.left = `${Math.max(8, Math.min(left + 14, room))}px`;
     tip.style.top = `${Math.max(8, top - tip.offsetHeight - 14)}px`;
-    Object.assign(dot.style, {left: `${left}px`, top: `${top}px`, borderColor: `var(--run-${line.tags[0].colour})`});
+    Object.assign(dot.style, {left: `${left}px`, top: `${top}px`, borderColor: line.glyph.line_color.value ?? line.glyph.line_color});
   }
 }

@@ -9,17 +9,9 @@
   function isPressed(chip) { return chip.getAttribute('aria-pressed') === 'true'; }
   function runOf(element) { return Number(element.dataset.run); }
 
-  const views = await drawCharts();
+  const views = await drawCharts(data);
   const charts = views.map((view) => view.model);
   const drawn = charts.flatMap((chart) => chart.renderers).filter((item) => item.tags.length);
-
-  async function drawCharts() {
-    const {document: json, roots} = data;
-    const places = Object.entries(roots).map(([key, id]) => [id, `chart-${key}`]);
-    const item = {docid: 'report', root_ids: Object.values(roots), roots: Object.fromEntries(places)};
-    const [manager] = await Bokeh.embed.embed_items({report: json}, [item]);
-    return Object.values(roots).map((id) => manager.get_by_id(id));
-  }
 
   // Lines
 
@@ -74,12 +66,6 @@
       axis.setv({start: Math.max(start, whole.start), end: Math.min(end, whole.end)});
     });
   });
-  // A finger scrolls the page until a tool of the chart is chosen.
-  if (matchMedia('(pointer: coarse)').matches) {
-    charts.forEach((chart) => chart.toolbar.tools.forEach((tool) => {
-      if (tool.type === 'BoxZoomTool') tool.active = false;
-    }));
-  }
 
   // Pareto view: every place and every front is in the data; a choice only looks them up.
 
@@ -157,25 +143,9 @@
     select.addEventListener('change', placeRuns);
   });
 
-  // Colours
-
-  function paint() {
-    const style = getComputedStyle(document.documentElement);
-    drawn.forEach(({glyph, tags}) => {
-      const {colour, fill, area} = tags[0];
-      const painted = style.getPropertyValue(colour === null ? '--soft' : `--run-${colour}`).trim();
-      if (!area) glyph.line_color = painted;
-      if (fill || area) glyph.fill_color = painted;
-    });
-  }
-
-  addEventListener('colours', paint);
-
-  printCharts(views, paint);
+  printCharts(views);
   showNearest(views);
   count();
-  // The document comes in the colours of the light page.
-  if (colours.dark()) paint();
   const [{document: bokehDocument}] = charts;
   while (!bokehDocument.is_idle) await new Promise(requestAnimationFrame);
   await new Promise(requestAnimationFrame);

@@ -4,12 +4,12 @@
 
 from collections.abc import Sequence
 from dataclasses import asdict
-from functools import cache
 
 from markupsafe import Markup
 
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.documents.bokeh_charts import PageCharts, library
 from ddct_bringup.documents.page_parts import (
     DOCUMENTS,
     MARKER,
@@ -17,8 +17,8 @@ from ddct_bringup.documents.page_parts import (
     page_part,
     page_template,
 )
-from ddct_bringup.report.chart_marks import NEUTRAL
-from ddct_bringup.report.charts import chart_document, charted_signals, dashed_lines
+from ddct_bringup.documents.palette import NEUTRAL
+from ddct_bringup.report.charts import charted_signals, dashed_lines, time_charts
 from ddct_bringup.report.definitions import definitions
 from ddct_bringup.report.evidence import COMPUTED, LoopEvidence, loop_rows, without_evidence
 from ddct_bringup.report.front_view import front_view
@@ -39,13 +39,18 @@ from ddct_bringup.scores.scored_run import YARDSTICK
 from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.design.analysis.loop_quantities import LOOP_QUANTITIES
-from ddct_controllers.design.drawing.line_looks import DARK_COLOURS, LIGHT_COLOURS, css_colours
 from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.differences import scenario_title
 from ddct_plant.scenario.file import scenario_to_yaml
 
 _ROOM = 'ddct_bringup.report'
-_SCRIPTS = ('nearest.js', 'paper.js', 'page.js')
+_STYLES = ((DOCUMENTS, 'page.css'), (DOCUMENTS, 'charts.css'), (_ROOM, 'page.css'))
+_SCRIPTS = (
+    (DOCUMENTS, 'page.js'),
+    (DOCUMENTS, 'charts.js'),
+    (_ROOM, 'nearest.js'),
+    (_ROOM, 'page.js'),
+)
 
 
 def report_page(
@@ -61,24 +66,24 @@ def report_page(
     shown = page_runs(runs)
     thesis_rows = [run.thesis for run in shown]
     charted = chart_runs(shown)
-    document, roots = chart_document(charted)
+    charts = PageCharts()
+    drawn = time_charts(charted, charts)
     quantities = charted_signals(charted)
     pareto = pareto_view(runs)
-    data = {'document': document, 'roots': roots, 'pareto': pareto and asdict(pareto)}
+    data = {**charts.data, 'pareto': pareto and asdict(pareto)}
     recordings = _simulated_first(runs)
     settings = recordings[0].settings
     shift = any(run.scores.is_shift for run in runs)
     table_5_1, figures = table_5_1_columns(runs, thesis_rows), figure_columns(runs)
     return page_template(_ROOM, 'page.html.j2').render(
         marker=Markup(MARKER),
-        bokeh_js=_library(),
-        style=page_part(DOCUMENTS, 'page.css') + page_part(_ROOM, 'page.css'),
-        script=page_part(DOCUMENTS, 'page.js')
-        + Markup().join(page_part(_ROOM, each) for each in _SCRIPTS),
+        bokeh_js=library(),
+        style=Markup().join(page_part(room, each) for room, each in _STYLES),
+        script=Markup().join(page_part(room, each) for room, each in _SCRIPTS),
         data=json_data(data),
         quantities=quantities,
         definitions=definitions(quantities, thesis=any(thesis_rows), shift=shift),
-        lanes=LANES if LANES in roots else None,
+        lanes=LANES if LANES in drawn else None,
         phases=OPACITY,
         limit_rows=limit_rows(runs),
         limits=limits.origin,
@@ -86,8 +91,6 @@ def report_page(
         floor_front=front_view(runs, limits.rules),
         front=pareto.fronts[pair_key(*pareto.default)] if pareto else [],
         neutral=NEUTRAL,
-        light=Markup(css_colours(LIGHT_COLOURS)),
-        dark=Markup(css_colours(DARK_COLOURS)),
         runs=shown,
         table_5_1=table_5_1,
         figures=figures,
@@ -148,12 +151,3 @@ def _sensors(runs: Sequence[ScoredRecording]) -> str | None:
     of_runs = (run.settings.scenario.sensors for run in runs if run.settings is not None)
     sensors = next(of_runs, None)
     return None if sensors is None else sensors.text
-
-
-@cache
-def _library() -> Markup:
-    """Return BokehJS from the installed package."""
-    from bokeh.resources import Resources
-
-    # At a lower log level it warns about charts without a visible line.
-    return Markup('\n'.join(Resources('inline', components=['bokeh'], log_level='error').js_raw))

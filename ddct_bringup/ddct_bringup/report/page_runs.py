@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from ddct_bringup.bag.recording import Recording
+from ddct_bringup.documents.palette import LineLook, looks, sample_svg
 from ddct_bringup.report.chart_marks import ChartRun
 from ddct_bringup.report.run_labels import run_labels
 from ddct_bringup.report.run_tables import RunOrigin, UpdateTimes, run_origin, update_times
@@ -16,7 +17,6 @@ from ddct_bringup.scores.run_notes import fallback_note
 from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.thesis.table_5_1 import ThesisRow
-from ddct_controllers.design.drawing.line_looks import LineLook, looks_of, sample_svg
 from ddct_plant.signals.gain_changes import changes_note
 
 SHOWN_AT_FIRST = 12
@@ -83,16 +83,14 @@ class PageRun:
 def page_runs(runs: Sequence[ScoredRecording]) -> list[PageRun]:
     """Return the runs for the template."""
     scored = [run.scores for run in runs]
-    looks = looks_of(run.label for run in scored)
-    of_each = zip(
-        runs, run_labels(scored), looks, _shown_at_first(runs), comparable_rows(runs), strict=True
-    )
+    labels, on = run_labels(scored), _shown_at_first(runs)
+    of_each = zip(runs, labels, looks(len(runs)), on, comparable_rows(runs), strict=True)
     return [
         PageRun(
             index=index,
             label=label,
             look=look,
-            sample=Markup(sample_svg(look)),
+            sample=sample_svg(look),
             scored=run,
             on=on,
             thesis=row,

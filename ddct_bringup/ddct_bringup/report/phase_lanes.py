@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.documents.palette import NEUTRAL
 from ddct_bringup.metrics.shift.course import ShiftCourse
 from ddct_bringup.metrics.zero_slip import LOCKED, SLIPPING
-from ddct_bringup.report.chart_marks import NEUTRAL, ChartRun, draw_events, switch
+from ddct_bringup.report.chart_marks import ChartRun, draw_events, switch
 from ddct_bringup.report.shift_signals import OFF_GOING
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.models.driveline import LOCK, RELEASE
@@ -140,12 +141,12 @@ def draw_lanes(chart: 'figure', runs: Sequence[ChartRun]) -> None:
     chart.ygrid.grid_line_color = None
     shades: list[DataRenderer] = []
     for row, lane in enumerate(lanes):
-        shade = draw_phases(chart, lane.spans, row, lane.run.look.light)
+        shade = draw_phases(chart, lane.spans, row, lane.run.look.colour)
         shade.name = lane.label
-        switch(shade, [lane.run], fill=True)
+        switch(shade, [lane.run])
         if lane.side is not None:
             for mark in draw_events(chart, lane.run.trajectory, row, NEUTRAL, lane.side):
-                switch(mark, [lane.run], colour=None)
+                switch(mark, [lane.run])
         shades.append(shade)
     chart.add_tools(
         HoverTool(

@@ -3,10 +3,12 @@
 """Map of the states of runs: coloured cells over values, one colour per state."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from ddct_bringup.documents.chart import Axis as ChartAxis
+from ddct_bringup.documents.chart import Cells
 from ddct_bringup.sweep.axis import Axis, value_text
 from ddct_bringup.verdict.state import (
     ADDED,
@@ -15,17 +17,11 @@ from ddct_bringup.verdict.state import (
     INVALID,
     LATE,
     NOT_ENGAGED,
-    STATES,
     TIED_UP,
     WITHHELD,
 )
 from ddct_controllers.design.drawing.line_styles import BLACK, PURPLE, VERMILLION
 from ddct_plant.models.engine_limits import OVER_REVVED, STALLED
-
-if TYPE_CHECKING:
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 STATE_COLOURS: Mapping[str, str] = {
     ENGAGED: '#d3e8f5',
@@ -40,41 +36,12 @@ STATE_COLOURS: Mapping[str, str] = {
     INVALID: BLACK,
 }
 """Colours by state: pale blue for engaged runs; darker is worse."""
-_MOST_TICKS, _MOST_COLUMNS = 8, 5
+_MOST_TICKS = 8
 
 
-def draw_states(
-    axes: 'Axes', edges: Sequence[np.ndarray], states: Sequence[Sequence[str]]
-) -> None:
-    """Draw (m, n) states as cells between n + 1 edges across and m + 1 edges up."""
-    from matplotlib.colors import ListedColormap
-
-    numbers = np.array([[STATES.index(state) for state in row] for row in states])
-    axes.pcolormesh(
-        edges[0],
-        edges[1],
-        numbers,
-        cmap=ListedColormap([STATE_COLOURS[state] for state in STATES]),
-        vmin=-0.5,
-        vmax=len(STATES) - 0.5,
-        edgecolors='white',
-        linewidth=0.4,
-    )
-    axes.grid(visible=False)
-
-
-def state_legend(figure: 'Figure', states: set[str], marks: 'Sequence[Artist]' = ()) -> None:
-    """Draw the legend of the states that occur below the figure, followed by other marks."""
-    from matplotlib.patches import Patch
-
-    handles: list[Artist] = [
-        Patch(facecolor=STATE_COLOURS[state], edgecolor='#7f7f7f', label=state.replace('_', ' '))
-        for state in STATES
-        if state in states
-    ]
-    handles += marks
-    columns = min(len(handles), _MOST_COLUMNS)
-    figure.legend(handles=handles, loc='outside lower center', ncols=columns)
+def state_cells(edges: tuple[np.ndarray, np.ndarray], states: Sequence[Sequence[str]]) -> Cells:
+    """Return (m, n) states as cells between n + 1 edges across and m + 1 edges up."""
+    return Cells(*edges, states, STATE_COLOURS)
 
 
 def places_of(axis: Axis) -> np.ndarray:
@@ -90,11 +57,12 @@ def edges_of(places: np.ndarray) -> np.ndarray:
     return np.array([2.0 * places[0] - middle[0], *middle, 2.0 * places[-1] - middle[-1]])
 
 
-def label_values(axis: Axis, which: Any) -> None:
-    """Label matplotlib's x or y axis with an axis of a sweep; few values become the ticks."""
-    which.set_label_text(axis.heading)
+def chart_axis(axis: Axis) -> ChartAxis:
+    """Return the axis of a chart for an axis of a sweep; few values become the ticks."""
+    ticks = None
     if not axis.numeric or len(axis.values) <= _MOST_TICKS:
-        which.set_ticks(places_of(axis), _tick_texts(axis.values))
+        ticks = dict(zip(places_of(axis).tolist(), _tick_texts(axis.values), strict=True))
+    return ChartAxis(axis.heading, ticks=ticks)
 
 
 def _tick_texts(values: Sequence[Any]) -> list[str]:

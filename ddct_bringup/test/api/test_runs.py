@@ -19,13 +19,13 @@ from ddct_bringup import api
 from ddct_bringup.api import run_and_load
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.trajectory_bag import write_trajectory
+from ddct_bringup.documents.palette import looks
 from ddct_bringup.metrics.catalogue import METRICS
 from ddct_bringup.programs.bringup import main as bringup
 from ddct_bringup.programs.score import main as score
 from ddct_bringup.run.description import custom_data
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers import plugins, registry
-from ddct_controllers.design.drawing.line_looks import controller_look
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
@@ -162,7 +162,7 @@ def test_a_figure_has_a_line_per_run_in_each_chart(worn):
     labels = [line.get_label() for line in charts[0].lines]
     assert labels == ['ls8, wear 0.7', 'pi, wear 1']
     colours = [line.get_color() for axes in charts for line in axes.lines]
-    assert colours == [controller_look(name).light for name in ('ls8', 'pi')] * 2
+    assert colours == [look.colour for look in looks(2)] * 2
     drawn = np.asarray(charts[1].lines[0].get_ydata())
     assert drawn.tolist() == worn.trajectory.engine_torque.tolist()
     with refused(api.ParameterError, key='w_x'):

@@ -65,7 +65,7 @@ DRAWN = folder._distributions
 
 def leave_out_charts(patch: pytest.MonkeyPatch) -> None:
     """Draw no chart on pages of runs and campaigns, which takes most of the time of small ones."""
-    patch.setattr('ddct_bringup.report.page.chart_document', lambda runs: ({}, {}))
+    patch.setattr('ddct_bringup.report.page.time_charts', lambda runs, page: [])
     patch.setattr(folder, '_distributions', lambda *_: '')
 
 

@@ -3,17 +3,18 @@
 """Each chart of the report draws the signal in its title, with its sign and unit."""
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from drawn_charts import drawn_charts
 from made_run import made_facts
 
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.documents.palette import LineLook, looks
 from ddct_bringup.report.chart_marks import ChartRun
-from ddct_bringup.report.charts import chart_document, chart_signals_of, dashed_lines
+from ddct_bringup.report.charts import chart_signals_of, dashed_lines
 from ddct_bringup.report.phase_lanes import LANES, OPACITY, phase_spans
-from ddct_controllers.design.drawing.line_looks import LineLook
 from ddct_plant.models.driveline import PhaseEvent
 from ddct_plant.signals.topics import SHIFT_TOPICS, all_signals
 
@@ -76,11 +77,9 @@ SHOWN = {
 @pytest.fixture(scope='module')
 def charts():
     """Return the charts by name, as the page loads them."""
-    from bokeh.document import Document
-
-    run = ChartRun(0, 'pi', LineLook(0, ()), RUN, FACTS, True, thesis_engagement_time_s=0.088)
-    document: Any = chart_document([run])[0]
-    return {chart.name: chart for chart in Document.from_json(document).roots}
+    (look,) = looks(1)
+    run = ChartRun(0, 'pi', look, RUN, FACTS, True, thesis_engagement_time_s=0.088)
+    return drawn_charts([run])
 
 
 def drawn(renderer: 'GlyphRenderer') -> tuple[np.ndarray, np.ndarray]:
@@ -138,31 +137,24 @@ def test_the_engine_torque_has_the_demand_and_what_it_lacks_of_it_from_control_s
 def test_runs_of_one_demand_share_its_line_and_a_run_without_one_has_none():
     unknown = Trajectory({**RUN.signals, 'torque_demand': np.full(STEPS + 1, np.nan)})
     runs = [
-        ChartRun(index, name, LineLook(index, ()), run, FACTS, True)
+        ChartRun(index, name, looks(3)[index], run, FACTS, True)
         for index, (name, run) in enumerate({'pi': RUN, 'ls8': RUN, 'log': unknown}.items())
     ]
-    from bokeh.document import Document
-
-    document: Any = chart_document(runs)[0]
-    (chart,) = [each for each in Document.from_json(document).roots if each.name == 'C_m']
+    chart = drawn_charts(runs)['C_m']
     shared = [line for line in lines(chart) if line.name is None]
-    assert [line.tags[0] for line in shared] == [{'runs': [0, 1], 'colour': None}]
+    assert [line.tags[0] for line in shared] == [{'runs': [0, 1]}]
     assert dashed_lines(runs) == ['reference', 'demand']
     assert dashed_lines(runs[2:]) == ['reference']
 
 
 def test_marks_of_a_line_lie_on_it_and_follow_its_colour():
-    from bokeh.document import Document
-
-    look = LineLook(3, (2, 2), 'star', filled=True)
-    document: Any = chart_document([ChartRun(1, 'mine', look, RUN, FACTS, shown=False)])[0]
-    chart: Any = Document.from_json(document).roots[2]
+    look = LineLook('#009e73', (2, 2), 'star')
+    chart = drawn_charts([ChartRun(1, 'mine', look, RUN, FACTS, shown=False)])['w_sr']
     (marks,) = [each for each in chart.renderers if each not in lines(chart)]
-    assert chart.name == 'w_sr'
     np.testing.assert_allclose(drawn(marks)[1], RUN.joint_speed[:, 3] * RPM, rtol=1e-6)
     assert len(marks.view.filter.indices) > 5
-    assert (marks.glyph.marker.value, marks.glyph.fill_color.value) == ('star', look.light)
-    assert (marks.visible, marks.tags) == (False, [{'runs': [1], 'colour': 3, 'fill': True}])
+    assert (marks.glyph.marker.value, marks.glyph.fill_color.value) == ('star', look.colour)
+    assert (marks.visible, marks.tags) == (False, [{'runs': [1]}])
 
 
 def sticking_run() -> Trajectory:
@@ -193,14 +185,12 @@ STICK_SLIP = sticking_run()
 @pytest.fixture(scope='module')
 def both():
     """Return the charts of a linear run together with one with a stick-slip clutch."""
-    from bokeh.document import Document
-
+    first, second = looks(2)
     runs = [
-        ChartRun(0, 'linear', LineLook(0, ()), RUN, FACTS, True),
-        ChartRun(1, 'sticks', LineLook(1, ()), STICK_SLIP, FACTS, True),
+        ChartRun(0, 'linear', first, RUN, FACTS, True),
+        ChartRun(1, 'sticks', second, STICK_SLIP, FACTS, True),
     ]
-    document: Any = chart_document(runs)[0]
-    return {chart.name: chart for chart in Document.from_json(document).roots}
+    return drawn_charts(runs)
 
 
 def test_a_clutch_that_sticks_adds_its_charts_for_its_own_runs_only(both):

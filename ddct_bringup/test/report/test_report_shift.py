@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from drawn_charts import drawn_charts
 from made_scores import made_scores
 
 from ddct_bringup.campaign.rows import METRIC_COLUMNS, scored_headless
 from ddct_bringup.metrics.catalogue import METRICS
-from ddct_bringup.report.charts import chart_document
 from ddct_bringup.report.page import report_page
 from ddct_bringup.report.page_runs import chart_runs, page_runs
 from ddct_bringup.report.phase_lanes import LANES, shift_spans
@@ -60,10 +60,7 @@ def runs() -> list[ScoredRecording]:
 @pytest.fixture(scope='module')
 def charts(runs: list[ScoredRecording]) -> dict[str, Any]:
     """Return the charts of the page by name, as it loads them."""
-    from bokeh.document import Document
-
-    document: Any = chart_document(chart_runs(page_runs(runs)))[0]
-    return {chart.name: chart for chart in Document.from_json(document).roots}
+    return drawn_charts(chart_runs(page_runs(runs)))
 
 
 def drawn(chart: Any, run: int, column: str) -> np.ndarray:

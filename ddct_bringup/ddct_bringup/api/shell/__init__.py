@@ -35,11 +35,12 @@ if TYPE_CHECKING:
     from ddct_bringup.campaign.arrow_columns import table_csv
     from ddct_bringup.campaign.campaign import Campaign
     from ddct_bringup.campaign.spec import read_spec
-    from ddct_bringup.campaign_report.distributions_figure import write_distributions
+    from ddct_bringup.campaign_report.distributions_chart import distributions_chart
     from ddct_bringup.campaign_report.printed_summary import print_summary
     from ddct_bringup.campaign_report.texts import RULES
+    from ddct_bringup.documents.chart_files import write_chart
     from ddct_bringup.documents.terminal import print_document
-    from ddct_bringup.floor.figure import write_front_figure
+    from ddct_bringup.floor.front_chart import front_chart
     from ddct_bringup.live.live_node import LiveNode
     from ddct_bringup.processes.fork_server import start_server
     from ddct_bringup.processes.live_process import live_view
@@ -67,7 +68,7 @@ if TYPE_CHECKING:
     from ddct_bringup.scores.validity import realtime_summary
     from ddct_bringup.sweep.axis import axis_of
     from ddct_bringup.sweep.sweep import sweep_document, sweep_notes, sweep_table
-    from ddct_bringup.sweep.sweep_figure import write_sweep_figure
+    from ddct_bringup.sweep.sweep_chart import sweep_chart
     from ddct_bringup.tuning.report.document import tuning_document
     from ddct_bringup.tuning.study import require_optuna
     from ddct_bringup.verdict.limits import Limits, load_limits

@@ -139,6 +139,6 @@ def show_campaign(
     if figure:
         recorded = RecordedCampaign.read(folder)
         results = results_of(recorded, read_table(folder, recorded))
-        shell.write_distributions(results, scenario_of(recorded), Path(figure))
+        shell.write_chart(shell.distributions_chart(results, scenario_of(recorded)), Path(figure))
     keep_digests(file for file in (json, csv, figure) if file not in (None, STDOUT))
     return summary

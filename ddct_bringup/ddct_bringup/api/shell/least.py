@@ -75,9 +75,10 @@ class LeastValues:
 
     def draw(self, file: Path) -> None:
         """Write the front as a figure."""
-        shell.write_front_figure(
-            self.floors, self.rows, _title(self.settings), file, counted_from(self.settings)
+        chart = shell.front_chart(
+            self.floors, self.rows, _title(self.settings), counted_from(self.settings)
         )
+        shell.write_chart(chart, file)
 
 
 def least_values(

@@ -170,7 +170,6 @@ LOOP_SHAPING_FIGURES = (
         *('2.8', 'Nichols chart with G_c1(s)'),
         name='L with G_c1',
         controller=_G_C1,
-        styled_as='ls2',
         specifications=NETWORK_SPECIFICATIONS,
         thesis_claim='far from -1, but crosses the circle',
     ),
@@ -178,7 +177,6 @@ LOOP_SHAPING_FIGURES = (
         *('2.9', 'Nichols chart with G_c2(s)'),
         name='L with G_c2',
         controller=_G_C2,
-        styled_as='ls7',
         specifications=PLACEMENT_SPECIFICATIONS,
         thesis_claim='the specifications are met; it does not mention the curve',
     ),
@@ -186,7 +184,6 @@ LOOP_SHAPING_FIGURES = (
         *('2.10', 'Step response with G_c2(s)'),
         name='G_c2',
         controller=_G_C2,
-        styled_as='ls7',
         printed=(0.52, 0.13),
     ),
 )

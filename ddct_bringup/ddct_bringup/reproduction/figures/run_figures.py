@@ -13,7 +13,7 @@ from ddct_bringup.reproduction.figures.figure_groups import FIGURE_GROUPS, Figur
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure, draw_over_time
 from ddct_bringup.reproduction.study_run import StudyRun, thesis_run
 from ddct_bringup.thesis.table_5_1 import CALIBRATED, PREDICTED, thesis_row
-from ddct_controllers.design.drawing.line_styles import REFERENCE_LINE, LineStyle, controller_style
+from ddct_controllers.design.drawing.line_styles import REFERENCE_LINE
 from ddct_controllers.registry import controller_label
 from ddct_plant.base.units import rpm_from_rad_s
 
@@ -64,17 +64,17 @@ def _legend(chosen: str, wear_gain: float, group: FigureGroup) -> str:
 
 def _draw(axes: 'Axes', group: FigureGroup, quantity: str, own: Sequence[str]) -> str:
     runs: dict[str, StudyRun] = {}
-    styles: dict[str, LineStyle] = {'reference': REFERENCE_LINE}
     for chosen in (*group.controllers, *own):
-        for repeat, wear in enumerate(group.wear_gains):
+        for wear in group.wear_gains:
             legend = _legend(chosen, wear, group)
             runs[legend] = thesis_run(chosen, group.architecture, wear)
-            styles[legend] = controller_style(controller_label(chosen), repeat)
     lines = {name: _line(run.trajectory, quantity) for name, run in runs.items()}
     if quantity == 'w_d':
         lines['reference'] = _line(list(runs.values())[-1].trajectory, 'reference')
     end_s = max(time[-1] for time, _ in lines.values())
-    draw_over_time(axes, _LABELS[quantity], (_FIRST_S, end_s), lines, styles)
+    draw_over_time(
+        axes, _LABELS[quantity], (_FIRST_S, end_s), lines, {'reference': REFERENCE_LINE}
+    )
     return (
         f'Thesis: {group.thesis_claim}. {group.verdict}. {_scores(group, runs, quantity)}.'
         + _table_5_1(group, quantity)

@@ -18,8 +18,7 @@ from ddct_controllers.design.drawing.charts import (
     draw_step_response,
     label_time_axis,
 )
-from ddct_controllers.design.drawing.distinct_lines import distinct_styles
-from ddct_controllers.design.drawing.line_styles import LineStyle, controller_style, line_styles
+from ddct_controllers.design.drawing.line_styles import LineStyle, line_styles
 from ddct_controllers.design.drawing.nichols import nichols_curve
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_controllers.design.loop_shaping.verification import contours
@@ -71,21 +70,11 @@ def draw_over_time(
     lines: Mapping[str, tuple[np.ndarray, np.ndarray]],
     styles: Mapping[str, LineStyle],
 ) -> None:
-    """
-    Draw (time, values) by name; lines without a style in `styles` get the next free one.
-
-    Where two lines would share a colour or a dash, one of them gets another.
-    """
+    """Draw (time, values) by name; lines without a style in `styles` get the next free one."""
     others = line_styles()
-    apart = distinct_styles({name: styles.get(name) or next(others) for name in lines})
     for name, (time, values) in lines.items():
-        axes.plot(time, values, label=name, **apart[name])
+        axes.plot(time, values, label=name, **(styles.get(name) or next(others)))
     label_time_axis(axes, quantity, range_s)
-
-
-def _solid(controller: str) -> LineStyle:
-    """Return a solid style for the only loop of a chart; bounds and references are dashed."""
-    return {**controller_style(controller), 'linestyle': '-'}
 
 
 def nichols_figure(
@@ -96,19 +85,13 @@ def nichols_figure(
     controller: FactoredTransferFunction,
     specifications: TimeSpecifications,
     thesis_claim: str,
-    styled_as: str | None = None,
 ) -> ThesisFigure:
-    """
-    Return the Nichols chart of L, without hold and delay, with the bounds of its design.
-
-    `styled_as` is the controller's registry name, None for one that has none.
-    """
+    """Return the Nichols chart of L, without hold and delay, with the bounds of its design."""
 
     def draw(axes: 'Axes') -> str:
         loop = continuous_loop(controller)
         curve = LoopCurve(loop)
-        styles = [_solid(styled_as)] if styled_as else None
-        draw_nichols(axes, {name: nichols_curve(curve.values)}, specifications, styles=styles)
+        draw_nichols(axes, {name: nichols_curve(curve.values)}, specifications)
         margins = loop_margins(loop)
         if not margins.stable:
             return f'The closed loop is unstable. Thesis: {thesis_claim}.'
@@ -133,17 +116,12 @@ def step_figure(
     name: str,
     controller: FactoredTransferFunction,
     printed: tuple[float, float],
-    styled_as: str,
 ) -> ThesisFigure:
-    """
-    Return the step response of one loop; `printed` are the thesis's t_r in s and overshoot.
-
-    `styled_as` is the controller's registry name.
-    """
+    """Return the step response of one loop; `printed` are the thesis's t_r in s and overshoot."""
 
     def draw(axes: 'Axes') -> str:
         time, output = step_response(continuous_loop(controller), _STEP_DURATION_S)
-        draw_step_response(axes, {name: (time, output)}, [_solid(styled_as)])
+        draw_step_response(axes, {name: (time, output)})
         return (
             f'Computed t_r = {rise_time_s(time, output):.2f} s and overshoot '
             f'{100.0 * overshoot(time, output):.0f} %; the thesis prints {printed[0]:.2f} s and '

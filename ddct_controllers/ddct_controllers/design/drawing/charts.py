@@ -3,7 +3,7 @@
 """Charts of a design: Nichols, Nyquist, step, magnitude; the files of a designed controller."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,17 +13,16 @@ from ddct_controllers.design.analysis.loop_curve import LoopCurve
 from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
 from ddct_controllers.design.drawing.chart_style import chart_style, new_chart, save_figure
-from ddct_controllers.design.drawing.line_looks import DASHES
 from ddct_controllers.design.drawing.line_styles import (
     BLACK,
     BLUE,
     BOUND_LINE,
+    DASHES,
     GREEN,
     GREY,
     ORANGE,
     REFERENCE_LINE,
     VERMILLION,
-    LineStyle,
     dash_style,
     line_styles,
 )
@@ -54,14 +53,12 @@ def draw_nichols(
     axes: 'Axes',
     curves: Mapping[str, NicholsCurve],
     specifications: TimeSpecifications,
-    *,
-    styles: Iterable[LineStyle] | None = None,
 ) -> None:
     """
     Draw loops by name in a Nichols chart.
 
     The chart has the specifications' constant-|S| and constant-|T| curves, which L should not
-    enter. `styles` are matplotlib keywords, one set for each line.
+    enter.
     """
     draw_nichols_grid(axes, _PHASE_DEG, _MAGNITUDE_DB)
     s_p, t_p = specifications.sensitivity_peak, specifications.complementary_peak
@@ -70,7 +67,7 @@ def draw_nichols(
         (f'|T| = T_p = {t_p:.2f}', constant_m_curve(t_p), VERMILLION, '--'),
     ):
         draw_turns(axes, curve, _PHASE_DEG, name, color=colour, linestyle=line)
-    for (name, curve), style in zip(curves.items(), styles or line_styles(), strict=False):
+    for (name, curve), style in zip(curves.items(), line_styles(), strict=False):
         axes.plot(curve.phase_deg, curve.magnitude_db, label=name, **style)
     critical = np.arange(-180.0, _PHASE_DEG[0] - 1.0, -TURN_DEG)
     axes.plot(critical, 0.0 * critical, '+', color=BLACK, markersize=11, markeredgewidth=2)
@@ -84,14 +81,9 @@ def draw_nichols(
 def draw_step_response(
     axes: 'Axes',
     responses: Mapping[str, tuple[np.ndarray, np.ndarray]],
-    styles: Iterable[LineStyle] | None = None,
 ) -> None:
-    """
-    Draw (time, output) of unit steps by name, with rise time and overshoot in the legend.
-
-    `styles` are matplotlib keywords, one set for each line.
-    """
-    drawn = zip(responses.items(), styles or line_styles(), strict=False)
+    """Draw (time, output) of unit steps by name, with rise time and overshoot in the legend."""
+    drawn = zip(responses.items(), line_styles(), strict=False)
     for (name, (time, output)), style in drawn:
         rise = rise_time_s(time, output)
         values = f'overshoot {100.0 * overshoot(time, output):.1f} %'

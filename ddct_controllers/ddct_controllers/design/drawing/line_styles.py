@@ -1,16 +1,14 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-Matplotlib keywords of lines: of a controller, of a reference, of a bound, of a curve.
+Matplotlib keywords of lines: of a curve, of a reference, of a bound.
 
-The colours are distinct for colour-blind readers.
+The colours are distinct for colour-blind readers, on a light and on a dark page.
 """
 
 from collections.abc import Iterator
 from itertools import cycle
 from typing import TYPE_CHECKING, TypedDict
-
-from ddct_controllers.design.drawing.line_looks import DASHES, DOTS, LineLook, controller_look
 
 if TYPE_CHECKING:
     from matplotlib.transforms import Transform
@@ -49,43 +47,43 @@ GREEN = '#009e73'
 PURPLE = '#cc79a7'
 ORANGE = '#e69f00'
 SKY = '#56b4e9'
-_COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
-"""Colours of lines: the palette of Okabe and Ito without its yellow, which is faint on white."""
-_DASHES = (DASHES[0], *DASHES[2:], DOTS)
+WINE = '#aa3377'
+COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, WINE)
 """
-Dashes of lines, as lengths of line and gap in points, empty for a solid line.
+Colours of lines, in order, from the palettes of Okabe and Ito, and of Paul Tol (`Bright`).
 
-There are as many as colours, so that lines differ in a grey print; none is the dash of references.
+They differ for all kinds of colour vision, with a contrast of 3 to a light and to a dark page.
 """
+DASHES: tuple[tuple[int, ...], ...] = (
+    (),
+    (7, 3),
+    (2, 2),
+    (9, 3, 2, 3),
+    (14, 4),
+    (9, 3, 2, 3, 2, 3),
+)
+"""
+Dashes of lines, as lengths of line and gap in pixels or points, empty for a solid line.
+
+They distinguish lines in a grey print, and more lines than there are colours.
+"""
+_COLOURS_ON_PAPER = (*COLOURS, ORANGE, SKY)
+_DASHES_ON_PAPER = (DASHES[0], *DASHES[2:], (2, 5), (16, 3, 7, 3))
+"""As many dashes as colours, so that lines differ in a grey print; none is that of references."""
 REFERENCE_LINE: LineStyle = {'color': BLACK, 'linestyle': '--', 'linewidth': 1.3}
 """Matplotlib keywords of the line of a reference, which a signal should follow."""
 BOUND_LINE: LineStyle = {'color': VERMILLION, 'linestyle': '--', 'linewidth': 1.6}
 """Matplotlib keywords of the line of a bound, which a signal should not exceed."""
 LINE_WIDTH = 1.5
 """Width of a line in points; matplotlib's dash lengths are multiples of it."""
-_MARKERS = {'circle': 'o', 'square': 's', 'star': '*', 'plus': 'P'}
 
 
 def line_styles() -> Iterator[LineStyle]:
     """Yield matplotlib keywords of one line after the other, without end."""
-    pairs = zip(cycle(_COLOURS), cycle(_DASHES), strict=False)
+    pairs = zip(cycle(_COLOURS_ON_PAPER), cycle(_DASHES_ON_PAPER), strict=False)
     return ({'color': colour, 'linestyle': dash_style(dash)} for colour, dash in pairs)
 
 
 def dash_style(dash: tuple[int, ...]) -> Dash:
     """Return matplotlib's `linestyle` for these lengths of line and gap in points."""
     return (0, tuple(length / LINE_WIDTH for length in dash)) if dash else '-'
-
-
-def controller_style(name: str, repeat: int = 0) -> LineStyle:
-    """Return matplotlib keywords of a controller's line, see `controller_look`."""
-    return look_style(controller_look(name, repeat))
-
-
-def look_style(look: LineLook) -> LineStyle:
-    """Return matplotlib keywords of a line with this look."""
-    style: LineStyle = {'color': look.light, 'linestyle': dash_style(look.dash)}
-    if look.mark:
-        style |= {'marker': _MARKERS[look.mark], 'markersize': 6.0, 'markevery': (0.06, 0.17)}
-        style['markerfacecolor'] = look.light if look.filled else 'white'
-    return style

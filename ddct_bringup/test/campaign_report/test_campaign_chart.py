@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The figure of a campaign: curves that end at the share of engaged runs, with title and scale."""
+"""The chart of a campaign: curves that end at the share of engaged runs, with title and scale."""
 
 from itertools import pairwise
 
@@ -8,18 +8,23 @@ import numpy as np
 import pytest
 from made_results import made_results
 
-from ddct_bringup.campaign_report.distributions_figure import distributions_figure
+from ddct_bringup.campaign_report.distributions_chart import distributions_chart
+from ddct_bringup.documents.chart import Line
+from ddct_bringup.documents.chart_files import matplotlib_figure
 from ddct_bringup.verdict.state import ENGAGED, INVALID
-from ddct_controllers.design.drawing.chart_style import chart_style
 
 JERK = 'peak_jerk_m_s3'
 
 
 def curves(results):
     """Return the curves of the only panel by label."""
-    figure = distributions_figure(results, 'thesis')
-    axes = figure.axes[0]
-    return {line.get_label(): line.get_xydata() for line in axes.get_lines()}, figure
+    chart = distributions_chart(results, 'thesis')
+    (panel,) = chart.panels
+    return {
+        line.label: np.column_stack([line.x, line.y])
+        for line in panel.items
+        if isinstance(line, Line)
+    }, chart
 
 
 def test_a_curve_rises_by_a_run_at_its_value_and_ends_at_the_share_of_engaged_runs():
@@ -28,12 +33,11 @@ def test_a_curve_rises_by_a_run_at_its_value_and_ends_at_the_share_of_engaged_ru
         {'wear_gain': [0.7, 0.8, 0.9, 1.0]},
         {JERK: [9.0, 4.0, 1.0, 2.0]},
     )
-    drawn, figure = curves(results)
+    drawn, chart = curves(results)
     assert drawn['pi'].tolist() == [[4.0, 0.0], [4.0, 1 / 3], [9.0, 2 / 3]]
-    assert figure.axes[0].get_xlabel() == 'peak jerk, m/s\u00b3'
-    title = figure.get_suptitle()
-    assert 'Scenario thesis: 4 runs over wear_gain' in title
-    assert 'points of a grid, not chances' in title
+    assert chart.panels[0].x.label == 'peak jerk, m/s\u00b3'
+    assert chart.title == 'Scenario thesis: 4 runs over wear_gain'
+    assert 'points of a grid, not chances' in chart.conditions
 
 
 def test_each_controller_has_a_curve_also_one_that_never_engaged():
@@ -44,10 +48,10 @@ def test_each_controller_has_a_curve_also_one_that_never_engaged():
         controllers=['pi', 'ls8'],
         random=['wear_gain'],
     )
-    drawn, figure = curves(results)
+    drawn, chart = curves(results)
     assert sorted(drawn) == ['ls8', 'pi']
     assert len(drawn['ls8']) == 0
-    assert 'random samples' in figure.get_suptitle()
+    assert 'random samples' in chart.conditions
 
 
 def test_a_curve_of_very_many_runs_keeps_its_ends():
@@ -75,13 +79,12 @@ def test_tick_labels_of_the_x_axis_do_not_overlap(highest):
         {'wear_gain': [0.7, 0.8]},
         {'friction_work_j': [0.2 * highest, highest]},
     )
-    with chart_style():
-        figure = distributions_figure(results, 'thesis')
-        canvas = FigureCanvasAgg(figure)
-        canvas.draw()
-        axis = figure.axes[0].xaxis
-        low, high = axis.get_view_interval()
-        ticks = [tick for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high]
-        boxes = [tick.label1.get_window_extent(canvas.get_renderer()) for tick in ticks]
+    figure = matplotlib_figure(distributions_chart(results, 'thesis'))
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    axis = figure.axes[0].xaxis
+    low, high = axis.get_view_interval()
+    ticks = [tick for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high]
+    boxes = [tick.label1.get_window_extent(canvas.get_renderer()) for tick in ticks]
     assert 2 <= len(ticks) <= 5
     assert all(left.x1 < right.x0 for left, right in pairwise(boxes))

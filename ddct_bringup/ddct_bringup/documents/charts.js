@@ -2,8 +2,23 @@
  * SPDX-License-Identifier: Apache-2.0 */
 'use strict';
 
-// Paper gets light copies of the charts, two beside each other, and the tables that a screen folds away.
-function printCharts(views, paint) {
+// Charts of a page: the Bokeh document, with the id of each chart by that of its place on the page.
+async function drawCharts({document: json, roots}) {
+  const places = Object.fromEntries(Object.entries(roots).map(([place, id]) => [id, place]));
+  const item = {docid: 'page', root_ids: Object.values(roots), roots: places};
+  const [manager] = await Bokeh.embed.embed_items({page: json}, [item]);
+  const views = Object.values(roots).map((id) => manager.get_by_id(id));
+  // A finger scrolls the page until a tool of the chart is chosen.
+  if (matchMedia('(pointer: coarse)').matches) {
+    views.forEach(({model}) => model.toolbar.tools.forEach((tool) => {
+      if (tool.type === 'BoxZoomTool') tool.active = false;
+    }));
+  }
+  return views;
+}
+
+// Paper gets light copies of the charts, and the tables that a screen folds away.
+function printCharts(views) {
   const WIDTH_PX = 500;
   const DENSITY = 2;
   const TURNS = 200;
@@ -17,7 +32,6 @@ function printCharts(views, paint) {
     before ??= {theme: colours.theme(), folded};
     folded.forEach((part) => { part.open = true; });
     colours.set('light');
-    paint();
     views.forEach((view) => {
       place(view).style.width = `${WIDTH_PX}px`;
       view.after_resize();
@@ -28,7 +42,7 @@ function printCharts(views, paint) {
     Object.defineProperty(window, 'devicePixelRatio', {value: DENSITY, configurable: true});
     views.forEach((view) => {
       const {canvas} = view.export('png', true);
-      view.el.closest('figure').querySelector('.paper').replaceChildren(canvas);
+      place(view).nextElementSibling.replaceChildren(canvas);
     });
     Object.defineProperty(window, 'devicePixelRatio', density);
   });
@@ -38,7 +52,6 @@ function printCharts(views, paint) {
     views.forEach((view) => { place(view).style.width = ''; });
     before?.folded.forEach((part) => { part.open = false; });
     colours.set(before?.theme ?? 'auto');
-    paint();
     before = null;
   });
 }

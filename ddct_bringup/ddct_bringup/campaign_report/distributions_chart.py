@@ -1,0 +1,65 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Chart of a campaign: distributions of the main metrics, a curve for each controller."""
+
+import numpy as np
+
+from ddct_bringup.campaign_report.results import Group, Results
+from ddct_bringup.documents.chart import Axis, Chart, Line, Panel
+from ddct_bringup.documents.page_parts import unit_text
+from ddct_bringup.documents.palette import LineLook, looks
+from ddct_bringup.metrics.catalogue import FIGURES, TABLE_5_1
+from ddct_bringup.verdict.state import ENGAGED, INVALID
+from ddct_plant.program.table import Quantity
+
+_ACROSS = 3
+_MOST_STEPS = 500
+"""Largest number of steps of a curve: more cannot be distinguished."""
+
+
+def distributions_chart(results: Results, scenario: str) -> Chart:
+    """
+    Return the chart: a panel for each main metric, a curve for each controller.
+
+    A curve is the share of the valid runs that engaged with at most this value. It ends at the
+    share of the runs that engaged and have a value; the rest up to 1 failed, or has no value.
+    """
+    metrics = [each for each in (*TABLE_5_1, *FIGURES) if each in results.quantities]
+    found = looks(len(results.groups))
+    panels = tuple(
+        Panel(
+            tuple(
+                _curve(results, group, quantity, look)
+                for group, look in zip(results.groups, found, strict=True)
+            ),
+            Axis(', '.join(filter(None, (quantity.symbol, unit_text(quantity.unit))))),
+            Axis('share of valid runs', (0.0, 1.02)),
+        )
+        for quantity in metrics
+    )
+    return Chart(_title(results, scenario), panels, _conditions(results), _ACROSS, same_y=True)
+
+
+def _title(results: Results, scenario: str) -> str:
+    varied = ', '.join([*results.grid, *results.random])
+    return f'Scenario {scenario}: {results.rows} runs over {varied}'
+
+
+def _conditions(results: Results) -> str:
+    kind = 'random samples' if results.random else 'points of a grid, not chances'
+    return f'share of the valid runs that engaged with at most this value ({kind})'
+
+
+def _curve(results: Results, group: Group, quantity: Quantity, look: LineLook) -> Line:
+    """Return one curve; that of a controller without an engaged run is empty."""
+    outcomes = results.outcomes[group.rows]
+    values = results.columns[quantity.key][group.rows]
+    taken = np.sort(values[(outcomes == ENGAGED) & ~np.isnan(values)])
+    valid = max(int(np.sum(outcomes != INVALID)), 1)
+    shares = np.arange(1, len(taken) + 1) / valid
+    if len(taken) > _MOST_STEPS:
+        kept = np.unique(np.linspace(0, len(taken) - 1, _MOST_STEPS).round().astype(int))
+        taken, shares = taken[kept], shares[kept]
+    if len(taken):
+        taken, shares = np.append(taken[:1], taken), np.append([0.0], shares)
+    return Line(taken, shares, look, group.label, steps=True)

@@ -1,0 +1,181 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""
+Charts as PNG and SVG files, and as figures for Python, by matplotlib.
+
+Pages have the same charts by Bokeh (`bokeh_charts`), which cannot write a file without a browser.
+"""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ddct_bringup.documents.chart import (
+    Area,
+    Axis,
+    Cells,
+    Chart,
+    Item,
+    Line,
+    Panel,
+    Points,
+    legend,
+)
+from ddct_controllers.design.drawing.chart_style import chart_style, headed, save_chart
+from ddct_controllers.design.drawing.line_styles import dash_style
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_WIDTH_IN, _WIDE_IN = 8.0, 11.0
+"""Width of a figure with one column of panels, and with several."""
+_PIXELS_PER_IN = 100.0
+_LEGEND_COLUMNS = 5
+_MOST_TICKS = 5
+"""Largest number of ticks across a panel beside others: the labels of large values are wide."""
+_MARKS = {
+    'circle': 'o',
+    'square': 's',
+    'star': '*',
+    'plus': 'P',
+    'diamond': 'D',
+    'triangle': '^',
+    'inverted_triangle': 'v',
+    'x': 'x',
+}
+
+
+def write_chart(chart: Chart, path: Path) -> None:
+    """Write a chart as PNG or SVG by the file's ending; raise DdctError where it cannot be."""
+    with chart_style():
+        save_chart(matplotlib_figure(chart), path)
+
+
+def matplotlib_figure(chart: Chart) -> 'Figure':
+    """Return a chart as a figure of matplotlib, for a file, a notebook or a slide."""
+    from matplotlib.figure import Figure
+
+    with chart_style():
+        rows = -(-len(chart.panels) // chart.columns)
+        heights = [
+            max(panel.height_px for panel in chart.panels[first : first + chart.columns])
+            for first in range(0, len(chart.panels), chart.columns)
+        ]
+        width = _WIDTH_IN if chart.columns == 1 else _WIDE_IN
+        keys = [(key.label, _handle(key.item)) for key in legend(chart)]
+        below = 0.7 + 0.25 * -(-len(keys) // _LEGEND_COLUMNS)
+        figure = Figure(figsize=(width, sum(heights) / _PIXELS_PER_IN + below))
+        figure.suptitle(headed(chart.title, chart.conditions, width), fontsize=11)
+        axes = figure.subplots(
+            rows,
+            chart.columns,
+            squeeze=False,
+            sharex=chart.same_x,
+            sharey=chart.same_y,
+            height_ratios=heights,
+        )
+        for each, panel in zip(axes.flat, chart.panels, strict=False):
+            _draw_panel(each, panel)
+            if chart.same_x or chart.same_y:
+                each.label_outer()
+            if chart.columns > 1 and not (panel.x.logarithmic or panel.x.ticks):
+                each.locator_params(axis='x', nbins=_MOST_TICKS - 1)
+        for each in axes.flat[len(chart.panels) :]:
+            each.set_axis_off()
+        if keys:
+            labels, handles = zip(*keys, strict=True)
+            figure.legend(handles, labels, ncols=_LEGEND_COLUMNS, loc='outside lower center')
+    return figure
+
+
+def _draw_panel(axes: 'Axes', panel: Panel) -> None:
+    axes.set_title(panel.title)
+    for item in panel.items:
+        _draw(axes, item)
+    _set_axis(axes.xaxis, panel.x, axes.set_xscale, axes.set_xlim)
+    _set_axis(axes.yaxis, panel.y, axes.set_yscale, axes.set_ylim)
+    if panel.downward:
+        axes.invert_yaxis()
+
+
+def _set_axis(which: Any, axis: Axis, set_scale: Any, set_limits: Any) -> None:
+    which.set_label_text(axis.label)
+    if axis.logarithmic:
+        set_scale('log')
+    if axis.span:
+        set_limits(*axis.span)
+    if axis.ticks is not None:
+        which.set_ticks(list(axis.ticks), list(axis.ticks.values()))
+
+
+def _draw(axes: 'Axes', item: Item) -> None:
+    if isinstance(item, Line):
+        style = _line_style(item)
+        if item.steps:
+            style['drawstyle'] = 'steps-post'
+        axes.plot(item.x, item.y, label=item.label or None, **style)
+    elif isinstance(item, Points):
+        axes.plot(item.x, item.y, label=item.label or None, **_mark_style(item))
+    elif isinstance(item, Area):
+        axes.fill_between(
+            item.x, item.low, item.high, color=item.colour, alpha=item.opacity, linewidth=0.0
+        )
+    else:
+        _draw_cells(axes, item)
+
+
+def _line_style(item: Line) -> dict[str, Any]:
+    style: dict[str, Any] = {
+        'color': item.look.colour,
+        'linestyle': dash_style(item.look.dash),
+        'linewidth': 0.8 * item.width,
+        'alpha': item.opacity,
+    }
+    if item.look.mark:
+        style |= {'marker': _MARKS[item.look.mark], 'markersize': 6.0, 'markevery': (0.06, 0.17)}
+    return style
+
+
+def _mark_style(item: Points) -> dict[str, Any]:
+    return {
+        'linestyle': 'none',
+        'marker': _MARKS[item.mark],
+        'color': item.colour,
+        'markerfacecolor': item.colour if item.filled else 'none',
+        'markersize': 0.8 * item.size,
+        'alpha': item.opacity,
+        'zorder': 5,
+    }
+
+
+def _draw_cells(axes: 'Axes', item: Cells) -> None:
+    from matplotlib.colors import ListedColormap
+
+    names = list(item.colours)
+    numbers = [[names.index(name) for name in row] for row in item.names]
+    axes.pcolormesh(
+        item.across,
+        item.up,
+        numbers,
+        cmap=ListedColormap(list(item.colours.values())),
+        vmin=-0.5,
+        vmax=len(names) - 0.5,
+        edgecolors='white',
+        linewidth=0.4,
+    )
+    axes.grid(visible=False)
+
+
+def _handle(item: Item) -> 'Artist':
+    """Return what stands for an item in the legend."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    if isinstance(item, Line):
+        return Line2D([], [], **{**_line_style(item), 'markevery': None})
+    if isinstance(item, Points):
+        return Line2D([], [], **_mark_style(item))
+    if isinstance(item, Area):
+        return Patch(facecolor=item.colour, alpha=item.opacity)
+    return Patch(facecolor=next(iter(item.colours.values())), edgecolor='#7f7f7f')
