@@ -61,6 +61,23 @@ class TorqueRequest(NamedTuple):
         }
 
 
+class AskedRequest(NamedTuple):
+    """A request for one period without the feedback, for which the controller is asked."""
+
+    measurement: Measurement
+    """What the controller receives, with the architecture's two torques."""
+    on: bool
+    """Whether feedback is on; else the controller passes the period in `hold`."""
+    on_coming: OnComingShare
+    """Share of the clutch in the open loop."""
+    open_loop: float
+    """Part of the torque without feedback in N m, that of the closing stage included."""
+    closing: float
+    """Share of the closing stage in `open_loop`, N m."""
+    closing_status: Status
+    """Pairs of the closing stage for `controller/status`."""
+
+
 OpenLoop = Callable[[Measurement, float], float]
 """
 Function from measurement and C_load in N m to the torque in N m that is independent of the slip.
@@ -127,6 +144,10 @@ class Architecture:
         below 1 feedback is off. What is known of the clutch corrects the request, and the
         controller has a clutch as requested.
         """
+        return self.answered(self.ask(measurement, on_coming))
+
+    def ask(self, measurement: Measurement, on_coming: OnComingShare = WHOLE) -> AskedRequest:
+        """Return what the controller is asked, as `update` does it, with all but its answer."""
         self._changed_gains.update(self._controller.gains, measurement.step)
         share = on_coming.share
         load_torque = self._load.torque(measurement.vehicle_speed, time_of_step(measurement.step))
@@ -142,7 +163,13 @@ class Architecture:
             on = on and not self._closing.closed
             closing = self._closing.status
         measurement = measurement.within(load_torque, open_loop)
-        command = self._command(measurement, on) if share == 1.0 else self._handover(measurement)
+        return AskedRequest(measurement, on, on_coming, open_loop, added, closing)
+
+    def answered(self, asked: AskedRequest) -> TorqueRequest:
+        """Return the request for the period, with the answer of the controller."""
+        measurement, on, on_coming, open_loop, added, closing = asked
+        whole = on_coming.share == 1.0
+        command = self._command(measurement, on) if whole else self._handover(measurement)
         torque = self._last_request = open_loop + command.clutch_torque
         if on and command.engine_torque is not None:
             self._engine_deviation = command.engine_torque - measurement.engine_torque

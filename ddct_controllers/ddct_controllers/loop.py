@@ -13,8 +13,8 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from ddct_controllers.architecture import make_architecture
-from ddct_controllers.handover.interface import HandoverMeasurement
+from ddct_controllers.architecture import AskedRequest, make_architecture
+from ddct_controllers.handover.interface import HandoverCommand, HandoverMeasurement
 from ddct_controllers.handover.laws import make_handover
 from ddct_controllers.interface import Controller, Measurement
 from ddct_plant.plant import Observation, Plant, PlantReply
@@ -37,6 +37,31 @@ class Request(NamedTuple):
     """Signals of what requests it, by name."""
 
 
+class ObservedStep(NamedTuple):
+    """A step before anything is requested of its clutch and engine."""
+
+    observation: Observation
+    """What a controller receives of the plant."""
+    handover: HandoverCommand | None
+    """Command of the handover for the period; None without a shift."""
+
+    @property
+    def on_coming(self) -> OnComingShare:
+        """Share in C_fOL of the clutch whose torque is requested."""
+        return WHOLE if self.handover is None else self.handover.on_coming
+
+
+class AskedStep(NamedTuple):
+    """A step of which the controller has the measurement, and has not answered it."""
+
+    measurement: Measurement
+    """Measured signals and the slip reference."""
+    asked: AskedRequest
+    """Request of the architecture without the feedback."""
+    time_us: float
+    """Wall time that the architecture has taken, us."""
+
+
 class PlantLoop(ABC):
     """The plant of a run and its handover, stepped by the requests of a class below this one."""
 
@@ -44,43 +69,61 @@ class PlantLoop(ABC):
         """Start in the run's initial state; `two_input`: the engine's torque is requested too."""
         self.plant = Plant(settings, two_input=two_input)
         self._handover = make_handover(settings.known) if settings.shift else None
+        self._last: PlantReply | None = None
 
     @abstractmethod
-    def request(self, observation: Observation, on_coming: OnComingShare) -> Request:
-        """Return what is requested at a step; `on_coming` has the clutch's share of C_fOL."""
+    def request(self, observed: ObservedStep) -> Request:
+        """Return what is requested at a step."""
 
-    def reply(self, step: int) -> PlantReply:
-        """Return torques and every signal of step k; advance all but the plant."""
+    def observe(self, step: int) -> ObservedStep:
+        """Return the plant at step k, with the command of the handover."""
         tick = self.plant.tick(step)
         if self._handover is None:
-            observation = self.plant.observe(tick)
-            request = self.request(observation, WHOLE)
+            return ObservedStep(self.plant.observe(tick), None)
+        command = self._handover.update(HandoverMeasurement.of_tick(tick))
+        return ObservedStep(self.plant.observe(tick, command.torque_cut), command)
+
+    def answer(self, observed: ObservedStep, request: Request) -> PlantReply:
+        """Return torques and every signal of an observed step; advance all but the plant."""
+        observation, command = observed
+        if command is None:
             reply = self.plant.reply(observation, request.torque, request.engine_torque)
         else:
-            command = self._handover.update(HandoverMeasurement.of_tick(tick))
-            observation = self.plant.observe(tick, command.torque_cut)
-            request = self.request(observation, command.on_coming)
             reply = self.plant.reply(
                 observation, request.torque, request.engine_torque, command.off_going_request
             )
             reply.signals.update(command.signals)
         reply.signals.update(request.signals)
+        self._last = reply
         return reply
+
+    def reply(self, step: int) -> PlantReply:
+        """Return torques and every signal of step k; advance all but the plant."""
+        observed = self.observe(step)
+        return self.answer(observed, self.request(observed))
 
     def advance(self, reply: PlantReply) -> None:
         """Integrate the driveline over the period that `reply` answered."""
         self.plant.advance(reply)
 
-    def replies(self, steps: int) -> Iterator[PlantReply]:
-        """Yield the reply of each step from t_0 to t_`steps`, or until the engine ends the run."""
-        reply = self.reply(0)
-        yield reply
-        for step in range(1, steps + 1):
-            self.advance(reply)
-            reply = self.reply(step)
-            yield reply
+    def steps(self, last: int) -> Iterator[ObservedStep]:
+        """
+        Yield each step from t_0 to t_`last`, or until the engine ends the run.
+
+        `answer` has to be called with each before the next is taken.
+        """
+        yield self.observe(0)
+        for step in range(1, last + 1):
+            assert self._last is not None, 'the step before is answered'
+            self.advance(self._last)
+            yield self.observe(step)
             if self.plant.over:
                 break
+
+    def replies(self, steps: int) -> Iterator[PlantReply]:
+        """Yield the reply of each step from t_0 to t_`steps`, or until the engine ends the run."""
+        for observed in self.steps(steps):
+            yield self.answer(observed, self.request(observed))
 
 
 class ClosedLoop(PlantLoop):
@@ -110,8 +153,13 @@ class ClosedLoop(PlantLoop):
         self.update_time_us = 0.0
         """Wall time of the controller's last update, us."""
 
-    def request(self, observation: Observation, on_coming: OnComingShare) -> Request:
+    def request(self, observed: ObservedStep) -> Request:
         """Return what the architecture requests at a step."""
+        return self.requested(self.ask(observed))
+
+    def ask(self, observed: ObservedStep) -> AskedStep:
+        """Return what the controller is asked at a step; advance reference and open loop."""
+        observation, on_coming = observed.observation, observed.on_coming
         step, measured = observation.tick.step, observation.tick.measured
         if step in self._changes:
             self.architecture.change_gains(self._changes[step])
@@ -120,11 +168,17 @@ class ClosedLoop(PlantLoop):
         )
         measurement = Measurement.of_plant(observation, speeds, rates)
         started = time.perf_counter()
-        request = self.architecture.update(measurement, on_coming)
-        self.update_time_us = 1e6 * (time.perf_counter() - started)
+        asked = self.architecture.ask(measurement, on_coming)
+        return AskedStep(measurement, asked, 1e6 * (time.perf_counter() - started))
+
+    def requested(self, step: AskedStep) -> Request:
+        """Return what the architecture requests, with the controller's answer."""
+        started = time.perf_counter()
+        request = self.architecture.answered(step.asked)
+        self.update_time_us = step.time_us + 1e6 * (time.perf_counter() - started)
         signals: dict[str, SignalValue] = {
-            'slip_reference': speeds,
-            'slip_reference_rate': rates,
+            'slip_reference': step.measurement.slip_reference,
+            'slip_reference_rate': step.measurement.slip_reference_rate,
             'status': request.status,
             **request.parts,
         }

@@ -17,7 +17,7 @@ from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.headless import run_headless, run_loop
 from ddct_bringup.scores.csv_text import signals_csv
-from ddct_controllers.loop import ClosedLoop
+from ddct_controllers.loop import ClosedLoop, ObservedStep, Request
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import step_of_stamp
@@ -71,9 +71,9 @@ def add_to_graph(add: Any, monkeypatch: pytest.MonkeyPatch) -> Any:
 class LoopWithMore(ClosedLoop):
     """Closed loop whose load also gives the made-up torque."""
 
-    def reply(self, step: int) -> PlantReply:
-        reply = super().reply(step)
-        reply.signals['made_up_torque'] = value_at(step)
+    def answer(self, observed: ObservedStep, request: Request) -> PlantReply:
+        reply = super().answer(observed, request)
+        reply.signals['made_up_torque'] = value_at(observed.observation.tick.step)
         return reply
 
 

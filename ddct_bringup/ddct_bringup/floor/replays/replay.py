@@ -8,12 +8,10 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.case import Case
-from ddct_controllers.loop import PlantLoop, Request
+from ddct_controllers.loop import ObservedStep, PlantLoop, Request
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.static_torque import StaticTorque
-from ddct_plant.plant import Observation
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.shift.balance import OnComingShare
 
 CLOSING_SHARE = 1.1
 """Request over C_fOL from the lock on."""
@@ -78,9 +76,9 @@ class ReplayedLoop(PlantLoop):
         super().__init__(settings)
         self._requests = requests
 
-    def request(self, observation: Observation, on_coming: OnComingShare) -> Request:
+    def request(self, observed: ObservedStep) -> Request:
         """Return the given request of the step."""
-        return Request(float(self._requests[observation.tick.step]), None, {})
+        return Request(float(self._requests[observed.observation.tick.step]), None, {})
 
 
 def run_requests(settings: RunSettings, requests: np.ndarray) -> Trajectory:
