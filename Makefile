@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -e -o pipefail -c
 .DELETE_ON_ERROR:
-.PHONY: help setup demo docs fmu tune-extra sbom test test-fast test-nightly lint fuzz faults bench soak loaded-runs benchmark-rows release \
+.PHONY: help setup demo docs fmu gym-extra tune-extra sbom test test-fast test-nightly lint fuzz faults bench soak loaded-runs benchmark-rows release \
     site lock clean
 
 ifneq ($(words $(CURDIR)),1)
@@ -23,7 +23,7 @@ TOOL = PYTHONPATH="$(CURDIR)/tools:$(CURDIR)/tests:$(CURDIR)/ddct_plant/test/hel
 SOURCED := . install/setup.bash;
 VENV_MADE := .venv/.made
 WORKSPACE_BUILT := install/.built
-EXTRAS_INSTALLED := .venv/.bench .venv/.fmu .venv/.fuzz .venv/.site .venv/.test .venv/.tune
+EXTRAS_INSTALLED := .venv/.bench .venv/.fmu .venv/.fuzz .venv/.gym .venv/.site .venv/.test .venv/.tune
 BUILD_INPUTS := $(wildcard ddct_*/package.xml ddct_*/setup.* ddct_*/bin ddct_*/config ddct_*/foxglove)
 
 PYTHONS := $(or $(PYTHON),python3.13 python3.12 python3.11 python3)
@@ -32,7 +32,7 @@ NEEDED_AT_RUN := bokeh, control, daqp, jinja2, matplotlib, osqp, scipy.signal, t
     diagnostic_msgs.msg, geometry_msgs.msg, rosgraph_msgs.msg, sensor_msgs.msg, trajectory_msgs.msg
 
 help:
-	@echo 'make setup | fmu | tune-extra | demo | test | test-fast | test-nightly | fuzz | faults | lint | docs | bench | soak | loaded-runs |' \
+	@echo 'make setup | fmu | gym-extra | tune-extra | demo | test | test-fast | test-nightly | fuzz | faults | lint | docs | bench | soak | loaded-runs |' \
 	    'benchmark-rows | sbom | release | site | lock | clean (see docs/use/setup.md)'
 
 setup: $(WORKSPACE_BUILT)
@@ -76,6 +76,9 @@ demo: setup
 # What runs a controller that is an FMU.
 fmu: setup .venv/.fmu
 
+# What makes the closed loop an environment for learners.
+gym-extra: setup .venv/.gym
+
 # What `ddct tune` searches with.
 tune-extra: setup .venv/.tune
 
@@ -85,13 +88,13 @@ TEST_FOLDERS := $(wildcard tests ddct_*/test)
 NIGHTLY := tests/nightly
 # A process that a hanging test has ended is not replaced: its successor would run that test again.
 WORKERS := --dist loadfile --max-worker-restart 0
-test: fmu tune-extra .venv/.site .venv/.test
+test: fmu gym-extra tune-extra .venv/.site .venv/.test
 	@$(SOURCED) $(BIN)/python -m pytest $(WORKERS) -n 3 --no-loadscope-reorder \
 	    -m 'not nightly' --ignore=$(NIGHTLY) $(TEST_FOLDERS)
 
 # What depends on the wall clock, whole gates and products of lists: before a release.
 LONG := -o faulthandler_timeout=3600
-test-nightly: fmu tune-extra .venv/.site .venv/.test
+test-nightly: fmu gym-extra tune-extra .venv/.site .venv/.test
 	@$(SOURCED) $(BIN)/python -m pytest $(LONG) $(WORKERS) -n 2 $(NIGHTLY)
 	@$(SOURCED) $(BIN)/python -m pytest $(LONG) $(WORKERS) -n 2 -m nightly --ignore=$(NIGHTLY) $(TEST_FOLDERS)
 	@$(SOURCED) DDCT_SCHEDULES=1000 $(BIN)/python -m pytest $(LONG) $(WORKERS) -n 2 --dist load \
@@ -103,7 +106,7 @@ benchmark-rows: setup
 	@$(SOURCED) $(BIN)/python -m ddct_bringup.benchmark.release
 
 # Tests without a marker; tests/plugins/tiers.py selects and checks them.
-test-fast: setup .venv/.tune
+test-fast: setup .venv/.gym .venv/.tune
 	@$(SOURCED) $(BIN)/python -m pytest $(WORKERS) -q -n 2 \
 	    --fast-tier --ignore=$(NIGHTLY) $(TEST_FOLDERS)
 
@@ -180,6 +183,7 @@ lock: $(VENV_MADE)
 	@$(COMPILE) requirements.in -o requirements.txt
 	@$(COMPILE) requirements-bench.in -c requirements.txt -o requirements-bench.txt
 	@$(COMPILE) requirements-fmu.in -c requirements.txt -o requirements-fmu.txt
+	@$(COMPILE) requirements-gym.in -c requirements.txt -o requirements-gym.txt
 	@$(COMPILE) requirements-test.in -c requirements.txt -o requirements-test.txt
 	@$(COMPILE) requirements-tune.in -c requirements.txt -o requirements-tune.txt
 	@$(COMPILE) requirements-site.in -c requirements.txt -o requirements-site.txt

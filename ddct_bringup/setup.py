@@ -78,6 +78,7 @@ setup(
     ],
     extras_require={
         'dask': ['distributed'],
+        'gym': ['gymnasium'],
         'live': ['foxglove-sdk'],
         'test': ['pytest'],
         'tune': ['optuna'],

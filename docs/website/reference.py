@@ -6,7 +6,10 @@ from pathlib import Path
 
 PAGES = {
     'Python interface': ('ddct_bringup.api',),
-    'Controllers': ('ddct_controllers.interface', 'ddct_controllers.handover.interface'),
+    'Controllers': (
+        *('ddct_controllers.interface', 'ddct_controllers.policy'),
+        'ddct_controllers.handover.interface',
+    ),
     'Models of the plant': (
         *('ddct_plant.models.engine', 'ddct_plant.models.load', 'ddct_plant.models.clutch'),
         *('ddct_plant.models.actuator', 'ddct_plant.models.driveline'),

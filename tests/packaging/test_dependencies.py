@@ -23,6 +23,7 @@ FROM_PYPI = {
     'distributed': ('distributed', None),
     'fmpy': ('fmpy', None),
     'foxglove': ('foxglove-sdk', None),
+    'gymnasium': ('gymnasium', None),
     'jinja2': ('jinja2', 'python3-jinja2'),
     'markupsafe': ('markupsafe', None),
     'matplotlib': ('matplotlib', 'python3-matplotlib'),
@@ -130,9 +131,8 @@ def without_key(module: str) -> set[str]:
 
 
 def test_the_requirements_of_the_wheel_path_name_all_of_it() -> None:
-    files = [
-        ROOT / name for name in ('requirements.in', 'requirements-fmu.in', 'requirements-tune.in')
-    ]
+    extras = ('fmu', 'gym', 'tune')
+    files = [ROOT / f'requirements{end}.in' for end in ('', *(f'-{each}' for each in extras))]
     lines = [line for file in files for line in file.read_text(encoding='utf-8').splitlines()]
     names = {re.split(r'[\[<=\s#]', line, maxsplit=1)[0] for line in lines}
     assert {name for name, _ in FROM_PYPI.values()} <= names

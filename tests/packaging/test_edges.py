@@ -69,6 +69,8 @@ FILES = {
 """Modules that read or write files, with what they read or write."""
 VALUES_BY_KEY = {
     'ddct_bringup/campaign/run_set.py',
+    'ddct_bringup/gym/cases.py',
+    'ddct_bringup/gym/environment.py',
     'ddct_bringup/run/run_base.py',
     'ddct_controllers/interface.py',
     'ddct_controllers/mpc/program/settings.py',

@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-USERS = ('requirements.txt', 'requirements-fmu.txt', 'requirements-uv.txt')
-"""Locks that `make setup`, `make demo` and `make fmu` install."""
+USERS = tuple(f'requirements{end}.txt' for end in ('', '-fmu', '-gym', '-tune', '-uv'))
+"""Locks that `make setup` and the targets of the optional extras install."""
 TESTS = 'requirements-test.txt'
 NOT_IN_THE_WHEEL = {'docutils': 'rst.el'}
 """By package under another licence the one file of it under the GPL, which its wheel lacks."""

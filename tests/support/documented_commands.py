@@ -36,6 +36,9 @@ NOT_RUN_HERE = {
         'takes minutes; test_documentation.py reads its specifications'
     ),
     'ddct benchmark mine': 'takes minutes; ddct_bringup/test/benchmark runs a small one',
+    'python docs/examples/learn_launch.py': 'takes a minute; tests/nightly/docs learns for less',
+    'ddct compare --controllers pi,ls8,learnt.py': 'needs what that writes',
+    'ddct benchmark learnt': 'needs what that writes',
     'ddct verify results/mine': 'needs that benchmark',
     'ddct tune': 'takes minutes; ddct_bringup/test/tuning runs small ones',
     'ddct compare --controllers pi,tuned/pi/best.yaml': 'needs that tuning',

@@ -51,7 +51,7 @@ class ScratchCopy:
         """Clone a commit and prepare the environment, minutes."""
         subprocess.run(['git', 'clone', '--quiet', repository, root], check=True)
         subprocess.run(['git', '-C', root, 'checkout', '--quiet', commit], check=True)
-        targets = ['setup', 'fmu', 'tune-extra', '.venv/.site', '.venv/.test']
+        targets = ['setup', 'fmu', 'gym-extra', 'tune-extra', '.venv/.site', '.venv/.test']
         subprocess.run(['make', '-C', root, *targets], check=True, stdout=subprocess.DEVNULL)
         return cls(root)
 

@@ -24,6 +24,7 @@ LOCKS = {
     'requirements.txt': 'required',
     'requirements-uv.txt': 'required',
     'requirements-fmu.txt': 'optional',
+    'requirements-gym.txt': 'optional',
     'requirements-tune.txt': 'optional',
     'requirements-bench.txt': 'excluded',
     'requirements-fuzz.txt': 'excluded',

@@ -1,0 +1,28 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The examples for learners run, and the search of one gives a controller that engages."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from support.documented import ROOT, run_examples
+
+from ddct_bringup.api import run
+
+pytest.importorskip('gymnasium', reason='Gymnasium, an optional extra, is absent: make gym-extra')
+
+
+def test_half_of_the_search_learns_to_engage_worn_and_new_clutches(tmp_path: Path) -> None:
+    learnt = tmp_path / 'learnt.py'
+    example = ROOT / 'docs' / 'examples' / 'learn_launch.py'
+    subprocess.run([sys.executable, str(example), str(learnt), '8'], check=True, timeout=600)
+    states = {
+        wear: run(str(learnt), scenario='launch', wear_gain=wear).state for wear in (0.7, 1.0, 1.3)
+    }
+    assert set(states.values()) == {'engaged'}
+
+
+def test_the_examples_of_the_page_run(tmp_path: Path) -> None:
+    run_examples('docs/use/learners.md', tmp_path)
