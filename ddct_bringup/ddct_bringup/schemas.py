@@ -17,6 +17,8 @@ from ddct_bringup.campaign.plan import CampaignPlan, NoPlan
 from ddct_bringup.campaign_report.summary import SCHEMA_VERSION as SUMMARY_VERSION
 from ddct_bringup.campaign_report.summary_types import Summary
 from ddct_bringup.floor.front import LimitDocument
+from ddct_bringup.identification.from_log.log_fit_report import LogFitDocument
+from ddct_bringup.identification.identification_report import IdentificationDocument
 from ddct_bringup.manifest.manifest import BENCHMARK, CAMPAIGN, RUNS, TUNING, Kind, Manifest
 from ddct_bringup.manifest.manifest import SCHEMA_VERSION as MANIFEST_VERSION
 from ddct_bringup.manifest.runs import RunsPlan
@@ -86,6 +88,8 @@ DOCUMENTS: Mapping[str, Document] = {
     'replay': Document('--json of campaign replay', ReplayDocument),
     'verify': Document('--json of verify, of one result', FolderDocument),
     'verify_several': Document('--json of verify, of several results', FoldersDocument),
+    'identify': Document('--json of identify', IdentificationDocument),
+    'identify_log': Document('--json of identify --from', LogFitDocument),
     'check_controller': Document('--json of check-controller', CheckReport),
     'plant': Document('--json of design plant', PlantOnPaper),
 }

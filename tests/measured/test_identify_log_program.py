@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from by_schema import require_schema
 from support.logs import identify, written
 from support.other_car import COLUMNS, TRUE, drive, write_csv
 from support.runs import expected, plan, record
@@ -35,6 +36,7 @@ def test_a_foreign_log_gives_tables_json_and_a_scenario_that_runs(
     printed = capsys.readouterr().out
     assert 'intervals of 95 %' in ' '.join(printed.split())
     content = json.loads(report.read_text())
+    require_schema('identify_log', content)
     rows = {row['name']: row for row in content['parameters']}
     assert {row['state'] for row in rows.values()} == {'fitted'}
     held = [rows[n]['lowest'] <= value <= rows[n]['highest'] for n, value in TRUE.items()]

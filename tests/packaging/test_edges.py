@@ -50,8 +50,6 @@ FILES = {
     'ddct_plant/files/json_schema.py': 'schemas',
     'ddct_bringup/identification/from_log/car_of_log.py': 'car, YAML',
     'ddct_bringup/identification/from_log/drive_of_log.py': 'drive, YAML',
-    'ddct_bringup/identification/from_log/log_fit_report.py': 'identify --log --json',
-    'ddct_bringup/identification/identification_report.py': 'identify --json',
     'ddct_bringup/logs/columns.py': 'column map, YAML',
     'ddct_plant/scenario/case.py': 'options --case, and files of a case, YAML',
     'ddct_plant/scenario/content.py': 'scenario, YAML',

@@ -2,15 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """The identified driveline as JSON and as tables."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 from ddct_bringup.identification.checks import IdentificationCheck
 from ddct_bringup.identification.coefficients import FITTED
-from ddct_bringup.identification.fit import Identification
+from ddct_bringup.identification.fit import CoefficientFit, Identification
+from ddct_plant.files.json_records import Inline
 from ddct_plant.models.parameters import SYMBOLS_AND_UNITS
 from ddct_plant.program.printed_table import print_note, print_tables
 from ddct_plant.program.table import UNDEFINED, Table, Weight, text_or_dash, with_reasons
@@ -55,23 +55,53 @@ def parameters_of(
     ]
 
 
-def content_of(
+@dataclass(frozen=True)
+class CheckEntry:
+    """A check of the fit, and whether it passes."""
+
+    check: Inline[IdentificationCheck]
+    passed: bool
+
+
+@dataclass(frozen=True)
+class FitEntry:
+    """How well the printed coefficients determine the driveline."""
+
+    degrees_of_freedom: int
+    chi_square: float
+    condition: float
+    """Condition number of the weighted Jacobian with respect to the logarithms."""
+    weakest_direction: Mapping[str, float]
+    """Unit vector of relative changes that moves the coefficients least, by parameter."""
+
+
+@dataclass(frozen=True)
+class IdentificationDocument:
+    """Document of `identify --json`."""
+
+    parameters: Sequence[IdentifiedParameter]
+    coefficients: Sequence[CoefficientFit]
+    checks: Sequence[CheckEntry]
+    fit: FitEntry
+
+
+def document_of(
     identification: Identification,
     parameters: Sequence[IdentifiedParameter],
     checks: Sequence[IdentificationCheck],
-) -> dict[str, Any]:
-    """Return the content of the JSON file; null for a value that does not exist."""
-    return {
-        'parameters': [vars(each) for each in parameters],
-        'coefficients': [vars(fit) for fit in identification.coefficients],
-        'checks': [vars(check) | {'passed': check.passed} for check in checks],
-        'fit': {
-            'degrees_of_freedom': identification.degrees_of_freedom,
-            'chi_square': identification.chi_square,
-            'condition': identification.condition,
-            'weakest_direction': _weakest(identification),
-        },
-    }
+) -> IdentificationDocument:
+    """Return the document of `--json`."""
+    return IdentificationDocument(
+        parameters,
+        identification.coefficients,
+        [CheckEntry(check, check.passed) for check in checks],
+        FitEntry(
+            identification.degrees_of_freedom,
+            identification.chi_square,
+            identification.condition,
+            _weakest(identification),
+        ),
+    )
 
 
 def _weakest(identification: Identification) -> dict[str, float]:

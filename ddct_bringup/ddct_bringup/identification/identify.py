@@ -14,7 +14,7 @@ from ddct_bringup.identification.coefficients import (
 from ddct_bringup.identification.fit import identify_driveline
 from ddct_bringup.identification.from_log.command import add_log_options, identify_log
 from ddct_bringup.identification.identification_report import (
-    content_of,
+    document_of,
     parameters_of,
     print_identification,
 )
@@ -80,7 +80,7 @@ def _run(argv: list[str]) -> int:
     parameters = parameters_of(identification, ranges)
     show_and_write(
         options.json,
-        content_of(identification, parameters, checks),
+        document_of(identification, parameters, checks),
         lambda: print_identification(identification, parameters, checks),
     )
     failed = [check.name for check in checks if not check.passed]

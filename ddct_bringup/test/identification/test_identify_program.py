@@ -5,6 +5,7 @@
 import json
 
 import pytest
+from by_schema import require_schema
 
 from ddct_bringup.identification.identify import main
 
@@ -13,7 +14,9 @@ pytestmark = pytest.mark.slow
 
 def run_json(capsys, *options):
     code = main(['--json', '-', *options])
-    return code, json.loads(capsys.readouterr().out)
+    content = json.loads(capsys.readouterr().out)
+    require_schema('identify', content)
+    return code, content
 
 
 def test_json_holds_parameters_coefficients_and_checks(capsys):

@@ -13,7 +13,7 @@ from ddct_bringup.identification.from_log.car_and_drive import OutFolder, write_
 from ddct_bringup.identification.from_log.car_of_log import base_of_car
 from ddct_bringup.identification.from_log.drive_of_log import LogDrive
 from ddct_bringup.identification.from_log.fit import fit_log
-from ddct_bringup.identification.from_log.log_fit_report import LogFitReport, content_of, print_fit
+from ddct_bringup.identification.from_log.log_fit_report import LogFitReport, print_fit
 from ddct_bringup.identification.from_log.prediction import predict
 from ddct_bringup.identification.from_log.stretches import TORQUES, stretches_of
 from ddct_bringup.identification.from_log.unknowns import PARAMETERS
@@ -122,7 +122,7 @@ def identify_log(options: argparse.Namespace) -> int:
     report = LogFitReport(
         fit, radius, start.name, len(stretches), predictions, reasons, fitted, held_out
     )
-    show_and_write(options.json, content_of(report), lambda: print_fit(report))
+    show_and_write(options.json, report.document, lambda: print_fit(report))
     if reasons and not options.force:
         kept = '; nothing is written' if out else ''
         raise DdctError(

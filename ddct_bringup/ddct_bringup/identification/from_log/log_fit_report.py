@@ -4,7 +4,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Literal
 
 from ddct_bringup.identification.from_log.base_car import ASSUMED, GIVEN, WheelRadius
 from ddct_bringup.identification.from_log.prediction import SpeedPrediction
@@ -18,6 +18,72 @@ from ddct_plant.models.body import RADIUS
 from ddct_plant.models.parameters import SYMBOLS_AND_UNITS
 from ddct_plant.program.printed_table import print_note, print_table
 from ddct_plant.program.table import Table, Weight, text_or_dash, with_reasons
+
+
+@dataclass(frozen=True)
+class FittedParameter:
+    """One parameter of the driveline with its 95 % interval, in SI units."""
+
+    name: str
+    """Name of its key in a car."""
+    symbol: str
+    """Symbol in the thesis."""
+    value: float | None
+    """None where the log does not determine it."""
+    lowest: float | None
+    highest: float | None
+    unit: str
+    state: Literal['fitted', 'fixed', 'not determined']
+    used: float
+    """Value of the new car."""
+
+
+@dataclass(frozen=True)
+class FittedDelay:
+    """Delay of one signal with its 95 % interval."""
+
+    signal: str
+    delay_s: float | None
+    """None where the log does not determine it."""
+    lowest_s: float | None
+    highest_s: float | None
+    state: Literal['fitted', 'given', 'not determined', 'reference']
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """Held-out data, and how well they are predicted."""
+
+    log: str
+    time_s: tuple[float, float]
+    """First and last time."""
+    signals: Sequence[SpeedPrediction]
+
+
+@dataclass(frozen=True)
+class LogFitDocument:
+    """Document of `identify --from LOG --json`."""
+
+    verdict: Literal['accepted', 'refused']
+    reasons: Sequence[str]
+    """Reasons to refuse the fit; none to accept it."""
+    log: str
+    sha256: str
+    fitted_s: tuple[float, float]
+    """First and last time of the log."""
+    parameters: Sequence[FittedParameter]
+    delays: Sequence[FittedDelay]
+    wheel_radius: WheelRadius
+    mass_kg: float
+    """Mass J_v / r_w^2."""
+    load_torque_n_m: float | None
+    """Rolling resistance and slope at the wheels; None where C_load was measured."""
+    load_torque_measured: bool
+    stretches: int
+    """Number of parts without a gap that were fitted."""
+    held_out: HeldOut
+    notes: Sequence[str]
+    """Limits of the fit, as sentences."""
 
 
 @dataclass(frozen=True)
@@ -53,81 +119,59 @@ class LogFitReport:
         return self.fit.parameters.vehicle_inertia / self.radius.value_m**2
 
     @property
-    def parameters(self) -> list[dict[str, Any]]:
-        """
-        Every parameter of the driveline in SI units: value, interval, state, value of the car.
-
-        The state is `fitted`, `fixed` or `not determined`; without a value or interval it is None.
-        """
+    def parameters(self) -> list[FittedParameter]:
+        """Every parameter of the driveline."""
         fit, used, rows = self.fit, self.fit.parameters.values(), []
         for name, (symbol, unit) in SYMBOLS_AND_UNITS.items():
             lowest, highest = fit.interval(name) or (None, None)
             weak = name in fit.undetermined
             rows.append(
-                {
-                    'name': name,
-                    'symbol': symbol,
-                    'value': None if weak else fit.values[name],
-                    'lowest': lowest,
-                    'highest': highest,
-                    'unit': unit,
-                    'state': 'not determined' if weak else 'fixed' if lowest is None else 'fitted',
-                    'used': used[name],
-                }
+                FittedParameter(
+                    name,
+                    symbol,
+                    None if weak else fit.values[name],
+                    lowest,
+                    highest,
+                    unit,
+                    'not determined' if weak else 'fixed' if lowest is None else 'fitted',
+                    used[name],
+                )
             )
         return rows
 
     @property
-    def delays(self) -> list[dict[str, Any]]:
-        """Delay of every signal in s: its 95 % interval, and a state as of a parameter."""
-        fit, rows = self.fit, []
-        for name, value in fit.delays.items():
-            lowest, highest = fit.interval(name) or (None, None)
-            state = 'given' if lowest is None else 'fitted'
-            if name in fit.undetermined:
-                state = 'not determined'
-            elif name == REFERENCE and not value:
-                state = 'reference'
-            delay = None if name in fit.undetermined else value
-            rows.append(
-                {
-                    'signal': name,
-                    'delay_s': delay,
-                    'lowest_s': lowest,
-                    'highest_s': highest,
-                    'state': state,
-                }
-            )
-        return rows
+    def delays(self) -> list[FittedDelay]:
+        """Delay of every signal."""
+        return [self._delay(name, value) for name, value in self.fit.delays.items()]
 
+    def _delay(self, name: str, value: float) -> FittedDelay:
+        lowest, highest = self.fit.interval(name) or (None, None)
+        if name in self.fit.undetermined:
+            return FittedDelay(name, None, lowest, highest, 'not determined')
+        if name == REFERENCE and not value:
+            return FittedDelay(name, value, lowest, highest, 'reference')
+        return FittedDelay(name, value, lowest, highest, 'given' if lowest is None else 'fitted')
 
-def content_of(report: LogFitReport) -> dict[str, Any]:
-    """Return the content of the JSON file; null for a value that does not exist."""
-    fit, fitted, held_out = report.fit, report.fitted, report.held_out
-    return {
-        'verdict': 'refused' if report.reasons else 'accepted',
-        'reasons': list(report.reasons),
-        'log': str(fitted.path),
-        'sha256': fitted.digest,
-        'fitted_s': list(_span(fitted)),
-        'parameters': report.parameters,
-        'delays': report.delays,
-        'wheel_radius': {
-            'value_m': report.radius.value_m,
-            'state': report.radius.state,
-            'measured': vars(report.radius.measured) if report.radius.measured else None,
-        },
-        'mass_kg': report.mass_kg,
-        'load_torque_n_m': fit.load_torque,
-        'load_torque_measured': LOAD in fitted.signals,
-        'stretches': report.stretches,
-        'held_out': {
-            'log': str(held_out.path),
-            'time_s': list(_span(held_out)),
-            'signals': [vars(each) for each in report.predictions],
-        },
-        'notes': report.notes,
-    }
+    @property
+    def document(self) -> LogFitDocument:
+        """Document of `--json`."""
+        fitted, held_out = self.fitted, self.held_out
+        return LogFitDocument(
+            verdict='refused' if self.reasons else 'accepted',
+            reasons=self.reasons,
+            log=str(fitted.path),
+            sha256=fitted.digest,
+            fitted_s=_span(fitted),
+            parameters=self.parameters,
+            delays=self.delays,
+            wheel_radius=self.radius,
+            mass_kg=self.mass_kg,
+            load_torque_n_m=self.fit.load_torque,
+            load_torque_measured=LOAD in fitted.signals,
+            stretches=self.stretches,
+            held_out=HeldOut(str(held_out.path), _span(held_out), self.predictions),
+            notes=self.notes,
+        )
 
 
 def _span(log: MeasuredLog) -> tuple[float, float]:
@@ -148,12 +192,12 @@ def print_fit(report: LogFitReport) -> None:
             ('parameter', 'symbol', 'value', 'lowest', 'highest', 'unit', 'state', 'new car'),
             [
                 (
-                    row['name'],
-                    row['symbol'],
-                    *(text_or_dash(row[each], '.5g') for each in ('value', 'lowest', 'highest')),
-                    row['unit'],
-                    row['state'],
-                    text_or_dash(row['used'], '.5g'),
+                    row.name,
+                    row.symbol,
+                    *(text_or_dash(each, '.5g') for each in (row.value, row.lowest, row.highest)),
+                    row.unit,
+                    row.state,
+                    text_or_dash(row.used, '.5g'),
                 )
                 for row in report.parameters
             ],
@@ -169,12 +213,12 @@ def print_fit(report: LogFitReport) -> None:
             ('signal', 'delay ms', 'lowest', 'highest', 'state'),
             [
                 (
-                    row['signal'],
+                    row.signal,
                     *(
-                        text_or_dash(None if row[each] is None else 1e3 * row[each], '.3f')
-                        for each in ('delay_s', 'lowest_s', 'highest_s')
+                        text_or_dash(None if each is None else 1e3 * each, '.3f')
+                        for each in (row.delay_s, row.lowest_s, row.highest_s)
                     ),
-                    row['state'],
+                    row.state,
                 )
                 for row in report.delays
             ],
