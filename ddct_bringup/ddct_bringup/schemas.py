@@ -14,8 +14,8 @@ from ddct_bringup.benchmark.result import SCHEMA_VERSION as RESULT_VERSION
 from ddct_bringup.benchmark.result_types import Result, ResultWithTimes
 from ddct_bringup.benchmark.update_times import UpdateTimesFile
 from ddct_bringup.campaign.plan import CampaignPlan, NoPlan
-from ddct_bringup.campaign_report.summary import SCHEMA_VERSION as SUMMARY_VERSION
-from ddct_bringup.campaign_report.summary_types import Summary
+from ddct_bringup.evaluation.summary import SCHEMA_VERSION as SUMMARY_VERSION
+from ddct_bringup.evaluation.summary import SummaryFile
 from ddct_bringup.floor.front import LimitDocument
 from ddct_bringup.identification.from_log.log_fit_report import LogFitDocument
 from ddct_bringup.identification.identification_report import IdentificationDocument
@@ -78,7 +78,7 @@ DOCUMENTS: Mapping[str, Document] = {
     'manifest_campaign': _manifest(CAMPAIGN, NoPlan),
     'manifest_benchmark': _manifest(BENCHMARK, BenchmarkPlan),
     'manifest_tuning': _manifest(TUNING, TuningPlan),
-    'campaign': _of_version('summary.json; --json of campaign', Summary, SUMMARY_VERSION),
+    'campaign': _of_version('summary.json; --json of campaign', SummaryFile, SUMMARY_VERSION),
     'benchmark': _of_version('result.json of benchmark', Result, RESULT_VERSION),
     'benchmark_with_times': _of_version('--json of benchmark', ResultWithTimes, RESULT_VERSION),
     'update_times': Document('timing.json of benchmark', UpdateTimesFile),

@@ -8,12 +8,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ddct_bringup.benchmark.cases import Cases
-from ddct_bringup.benchmark.statistics.case_figures import FIGURES, CaseFigures
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.keys import CONTROLLERS
 from ddct_bringup.campaign.scored import Scorer
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.campaign.specification.parts import RANDOM, ROOT_SEED, SAMPLES
+from ddct_bringup.evaluation.case_figures import FIGURES, CaseFigures
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import ENGAGED
 

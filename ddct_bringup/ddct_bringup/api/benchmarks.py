@@ -2,15 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Judge controllers on the benchmark from Python."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from ddct_bringup.api.shell.judging import judge_into, judged_of
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.conduct import DEVELOPMENT, HELD_OUT
-from ddct_bringup.benchmark.evaluated import MAIN
 from ddct_bringup.benchmark.file_names import PAGE
-from ddct_bringup.benchmark.result_types import Evaluation
+from ddct_bringup.evaluation.quantities import MAIN
+from ddct_bringup.evaluation.summary import GroupSummary
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import to_json
 
@@ -57,23 +58,26 @@ def benchmark(
     for name, reason in failed.items():
         raise DdctError(f'{name}: {reason}')
     (found,) = result.controllers
-    columns = {
-        f'{part}.{name}': values
-        for part, each in ((DEVELOPMENT, found.development), (HELD_OUT, found.held_out))
-        for name, values in _columns(each or []).items()
-    }
+    columns = {}
+    if found.held_out and result.development:
+        theirs = found.held_out.groups
+        ours = [result.development.group(each.controller) for each in theirs]
+        columns = {
+            f'{part}.{name}': values
+            for part, each in ((DEVELOPMENT, ours), (HELD_OUT, theirs))
+            for name, values in _columns(each).items()
+        }
     table = pandas.DataFrame(columns).rename_axis('controller')
     return BenchmarkResults(table, to_json(result), folder / PAGE)
 
 
-def _columns(controllers: list[Evaluation]) -> dict[str, dict[str, float | None]]:
+def _columns(groups: Sequence[GroupSummary]) -> dict[str, dict[str, float | None]]:
     """Return the share of successes, and the median of each figure, by controller."""
-    found = {'success': {each.controller: each.success.share for each in controllers}}
+    found = {'success': {each.controller: each.engaged.value for each in groups}}
     for key in MAIN:
         found[key] = {
-            each.controller: quantity.spread.quantiles.p50
-            for each in controllers
-            for quantity in each.quantities
-            if quantity.name == key
+            each.controller: each.quantities[key].quantiles.p50
+            for each in groups
+            if key in each.quantities
         }
     return found

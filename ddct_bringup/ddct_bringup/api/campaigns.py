@@ -14,8 +14,9 @@ from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import INDEX
 from ddct_bringup.campaign.plan import RecordedCampaign
 from ddct_bringup.campaign.spec import read_spec, spec_of
-from ddct_bringup.campaign_report.reading import read_table, results_of
-from ddct_bringup.campaign_report.summary import summary_of
+from ddct_bringup.campaign_report.reading import grouped_rows, read_table
+from ddct_bringup.evaluation.summarise import summary_of
+from ddct_bringup.evaluation.summary import SummaryFile
 from ddct_bringup.sweep.axis import Axis, axis, axis_of
 from ddct_bringup.verdict.limits import load_limits
 from ddct_plant.files.json_records import to_json
@@ -57,7 +58,7 @@ def read_campaign(folder: str | Path) -> CampaignResults:
     """Return the rows and the summary of a finished campaign; raise DdctError without one."""
     recorded = RecordedCampaign.read(Path(folder))
     table = read_table(Path(folder), recorded)
-    summary = to_json(summary_of(results_of(recorded, table)))
+    summary = to_json(SummaryFile.of(summary_of(grouped_rows(recorded, table))))
     return CampaignResults(table.to_pandas().set_index(INDEX), summary)
 
 

@@ -10,7 +10,7 @@ from ddct_bringup.api.result import Run, as_runs
 from ddct_bringup.campaign.plan import RecordedCampaign
 from ddct_bringup.campaign_report.distributions_chart import distributions_chart
 from ddct_bringup.campaign_report.folder import scenario_of
-from ddct_bringup.campaign_report.reading import read_table, results_of
+from ddct_bringup.campaign_report.reading import grouped_rows, read_table
 from ddct_bringup.documents.chart import Axis, Chart, Line, Panel
 from ddct_bringup.documents.chart_files import matplotlib_figure
 from ddct_bringup.documents.palette import looks
@@ -55,7 +55,7 @@ def campaign_figure(folder: str | Path) -> 'Figure':
     a folder without a finished campaign.
     """
     recorded = RecordedCampaign.read(Path(folder))
-    results = results_of(recorded, read_table(Path(folder), recorded))
+    results = grouped_rows(recorded, read_table(Path(folder), recorded))
     return matplotlib_figure(distributions_chart(results, scenario_of(recorded)))
 
 

@@ -2,19 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows of controllers on the same cases, as one table."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 import pyarrow as pa
 
-from ddct_bringup.campaign.arrow_columns import arrow_column, numpy_columns
-from ddct_bringup.campaign.columns import CONTROLLER
+from ddct_bringup.campaign.arrow_columns import arrow_column
+from ddct_bringup.campaign.keys import SCENARIO
+from ddct_bringup.campaign.rows import CONTROLLER, INDEX
+from ddct_bringup.evaluation.grouped_rows import By
 from ddct_plant.base.errors import DdctError
-
-CASE = 'case'
-"""Column of the number of the case, which no row has: it follows from its place."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,54 +24,60 @@ class CaseRows:
     Raise DdctError where controllers have other cases.
     """
 
-    table: pa.Table
-    """Rows with the columns of a campaign; without rows it may have none."""
+    rows: pa.Table
+    """Rows with the columns of a campaign."""
 
     def __post_init__(self) -> None:
         """Check that each controller has all cases."""
-        if self._names != [name for name in self.controllers for _ in range(self.cases)]:
+        names = self.rows[CONTROLLER].to_pylist()
+        if names != [name for name in self.controllers for _ in range(self.cases)]:
             raise DdctError('the rows of controllers are not those of the same cases')
-
-    @cached_property
-    def _names(self) -> list[str]:
-        rows = self.table
-        return rows[CONTROLLER].to_pylist() if len(rows) else []
 
     @cached_property
     def controllers(self) -> tuple[str, ...]:
         """Names of the controllers."""
-        return tuple(dict.fromkeys(self._names))
+        return tuple(dict.fromkeys(self.rows[CONTROLLER].to_pylist()))
 
     @property
     def cases(self) -> int:
         """Number of cases."""
-        return len(self.table) // max(len(self.controllers), 1)
+        return len(self.rows) // max(len(self.controllers), 1)
 
-    @cached_property
-    def _columns(self) -> Mapping[str, np.ndarray]:
-        """Columns by name, (controllers x cases,) each; NaN for an undefined number."""
-        return numpy_columns(self.table)
+    @property
+    def table(self) -> pa.Table:
+        """Rows with the number of the case of each as its index."""
+        cases = [*range(self.cases)] * len(self.controllers)
+        others = [name for name in self.rows.column_names if name != INDEX]
+        return self.rows.select(others).append_column(INDEX, arrow_column(pa.int64(), cases))
 
-    def of(self, controller: str) -> Mapping[str, np.ndarray]:
+    def by(
+        self, varied: Sequence[str], focus: tuple[str, ...] = (), *, dominance: bool = False
+    ) -> By:
         """
-        Return the columns of one controller, (cases,) each, and the numbers of the cases.
+        Return how the rows are summarised: a group for each controller, with parts by scenario.
 
-        An undefined number is NaN.
+        `varied` are the keys that were drawn. An invalid run is a failure.
         """
-        first = self._first(controller)
-        columns = {name: each[first : first + self.cases] for name, each in self._columns.items()}
-        return {**columns, CASE: np.arange(self.cases)}
+        columns = self.rows.column_names
+        return By(
+            grid=(SCENARIO,),
+            random=tuple(key for key in varied if key in columns),
+            parts=SCENARIO,
+            invalid_fails=True,
+            dominance=dominance,
+            focus=focus,
+        )
 
     def only(self, controllers: Sequence[str]) -> 'CaseRows':
         """Return the rows of some controllers, each once, in the order in which they are given."""
         parts = map(self._part, dict.fromkeys(controllers))
-        return CaseRows(pa.concat_tables([self.table.slice(0, 0), *parts]))
+        return CaseRows(pa.concat_tables([self.rows.slice(0, 0), *parts]))
 
     def of_cases(self, cases: Sequence[int] | np.ndarray) -> 'CaseRows':
         """Return the rows of some cases."""
         firsts = self.cases * np.arange(len(self.controllers))
         places = (firsts[:, np.newaxis] + np.asarray(cases, dtype=int)).ravel()
-        return CaseRows(self.table.take(arrow_column(pa.int64(), places.tolist())))
+        return CaseRows(self.rows.take(arrow_column(pa.int64(), places.tolist())))
 
     def beside(self, others: 'CaseRows') -> 'CaseRows':
         """
@@ -83,12 +88,12 @@ class CaseRows:
         if others.cases != self.cases:
             raise DdctError(f'{others.cases} cases are not the {self.cases} of the others')
         added = [each for each in others.controllers if each not in self.controllers]
-        both = [name for name in self.table.column_names if name in others.table.column_names]
-        parts = [each.select(both) for each in (self.table, *map(others._part, added))]
+        both = [name for name in self.rows.column_names if name in others.rows.column_names]
+        parts = [each.select(both) for each in (self.rows, *map(others._part, added))]
         return CaseRows(pa.concat_tables(parts, promote_options='permissive'))
 
     def _part(self, controller: str) -> pa.Table:
-        return self.table.slice(self._first(controller), self.cases)
+        return self.rows.slice(self._first(controller), self.cases)
 
     def _first(self, controller: str) -> int:
         """Return the place of the first row of a controller."""

@@ -25,8 +25,8 @@ from ddct_bringup.campaign.keys import SCENARIO
 from ddct_bringup.campaign.plan import RecordedCampaign
 from ddct_bringup.campaign.rows import STATE
 from ddct_bringup.campaign.spec import CampaignSpec
-from ddct_bringup.campaign_report.evaluated_quantities import QUANTITIES
 from ddct_bringup.campaign_report.reading import read_table
+from ddct_bringup.evaluation.quantities import OF_RUNS
 from ddct_bringup.manifest.manifest import MANIFEST
 from ddct_bringup.manifest.origin import CodeOrigin
 from ddct_bringup.verdict.limits import packaged_limits
@@ -79,8 +79,7 @@ def columns_kept(spec: CampaignSpec) -> list[str]:
     """Return the columns that a release keeps: what runs are evaluated by, and what varied."""
     varied = [key for key in spec.vary if key != SEED]
     grid = [key for key, values in spec.grid.items() if key == SCENARIO or len(values) > 1]
-    quantities = [each.key for each in QUANTITIES]
-    return [CONTROLLER, SEED, *grid, *varied, *_OUTCOME, *quantities]
+    return [CONTROLLER, SEED, *grid, *varied, *_OUTCOME, *OF_RUNS]
 
 
 def release_rows(folder: Traversable | Path) -> ReleaseRows:

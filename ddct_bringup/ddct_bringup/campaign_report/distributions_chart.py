@@ -4,10 +4,10 @@
 
 import numpy as np
 
-from ddct_bringup.campaign_report.results import Group, Results
 from ddct_bringup.documents.chart import Axis, Chart, Line, Panel
 from ddct_bringup.documents.page_parts import unit_text
 from ddct_bringup.documents.palette import LineLook, looks
+from ddct_bringup.evaluation.grouped_rows import Group, GroupedRows
 from ddct_bringup.metrics.catalogue import FIGURES, TABLE_5_1
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_plant.program.table import Quantity
@@ -17,7 +17,7 @@ _MOST_STEPS = 500
 """Largest number of steps of a curve: more cannot be distinguished."""
 
 
-def distributions_chart(results: Results, scenario: str) -> Chart:
+def distributions_chart(results: GroupedRows, scenario: str) -> Chart:
     """
     Return the chart: a panel for each main metric, a curve for each controller.
 
@@ -40,17 +40,17 @@ def distributions_chart(results: Results, scenario: str) -> Chart:
     return Chart(_title(results, scenario), panels, _conditions(results), _ACROSS, same_y=True)
 
 
-def _title(results: Results, scenario: str) -> str:
-    varied = ', '.join([*results.grid, *results.random])
+def _title(results: GroupedRows, scenario: str) -> str:
+    varied = ', '.join([*results.by.grid, *results.by.random])
     return f'Scenario {scenario}: {results.rows} runs over {varied}'
 
 
-def _conditions(results: Results) -> str:
-    kind = 'random samples' if results.random else 'points of a grid, not chances'
+def _conditions(results: GroupedRows) -> str:
+    kind = 'random samples' if results.by.random else 'points of a grid, not chances'
     return f'share of the valid runs that engaged with at most this value ({kind})'
 
 
-def _curve(results: Results, group: Group, quantity: Quantity, look: LineLook) -> Line:
+def _curve(results: GroupedRows, group: Group, quantity: Quantity, look: LineLook) -> Line:
     """Return one curve; that of a controller without an engaged run is empty."""
     outcomes = results.outcomes[group.rows]
     values = results.columns[quantity.key][group.rows]

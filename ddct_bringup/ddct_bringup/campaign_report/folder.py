@@ -16,10 +16,7 @@ from ddct_bringup.campaign_report.distributions_chart import distributions_chart
 from ddct_bringup.campaign_report.map_types import MapScale
 from ddct_bringup.campaign_report.maps import FAILED_SHARE, campaign_maps
 from ddct_bringup.campaign_report.printed_summary import MAIN
-from ddct_bringup.campaign_report.reading import read_table, results_of
-from ddct_bringup.campaign_report.results import Results
-from ddct_bringup.campaign_report.summary import summary_of
-from ddct_bringup.campaign_report.summary_types import Summary
+from ddct_bringup.campaign_report.reading import grouped_rows, read_table
 from ddct_bringup.documents.chart_files import matplotlib_figure
 from ddct_bringup.documents.page_parts import (
     DOCUMENTS,
@@ -30,6 +27,9 @@ from ddct_bringup.documents.page_parts import (
     page_template,
     value_text,
 )
+from ddct_bringup.evaluation.grouped_rows import GroupedRows
+from ddct_bringup.evaluation.summarise import summary_of
+from ddct_bringup.evaluation.summary import Summary, SummaryFile
 from ddct_bringup.manifest.manifest import MANIFEST, finish_manifest, keep_digests
 from ddct_bringup.metrics.catalogue import TABLE_5_1
 from ddct_bringup.run.output_folder import locked_folders
@@ -53,12 +53,12 @@ def write_campaign_page(folder: Path) -> Summary:
     Raise DdctError for a folder without a finished campaign, and when a file cannot be written.
     """
     recorded = RecordedCampaign.read(folder)
-    results = results_of(recorded, read_table(folder, recorded))
+    results = grouped_rows(recorded, read_table(folder, recorded))
     summary = summary_of(results)
     replay = texts.replay_command('.', 'INDEX')
     page = campaign_page(results, summary, replay, facts_of(recorded))
     with locked_folders(folder):
-        write_json(str(folder / SUMMARY), summary)
+        write_json(str(folder / SUMMARY), SummaryFile.of(summary))
         write_text(str(folder / PAGE), page)
         keep_digests([folder / SUMMARY, folder / PAGE])
         if (folder / MANIFEST).exists():  # else it is a part of another result
@@ -93,7 +93,7 @@ def facts_of(recorded: RecordedCampaign) -> dict[str, str]:
 
 
 def campaign_page(
-    results: Results, summary: Summary, replay: str, facts: Mapping[str, str]
+    results: GroupedRows, summary: Summary, replay: str, facts: Mapping[str, str]
 ) -> str:
     """
     Return the HTML page of a campaign; `facts` describe its origin.
@@ -124,7 +124,7 @@ def campaign_page(
     )
 
 
-def _distributions(results: Results, scenario: str) -> str:
+def _distributions(results: GroupedRows, scenario: str) -> str:
     """Return the figure of the distributions, encoded for a data URI."""
     with chart_style():
         figure = matplotlib_figure(distributions_chart(results, scenario))

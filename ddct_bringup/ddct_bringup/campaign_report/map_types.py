@@ -26,7 +26,7 @@ class MapPanel:
     runs: list[int]
     failed: list[int]
     invalid: list[int]
-    intervals: list[tuple[float, float]] | None
+    intervals: list[tuple[float | None, float | None]] | None
     """Intervals of the share of failed runs; None where no place has several runs."""
     state: list[str]
     """State that marks the place."""

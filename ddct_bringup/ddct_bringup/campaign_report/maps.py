@@ -15,9 +15,9 @@ from ddct_bringup.campaign_report.map_types import (
     MapScale,
     PointMap,
 )
-from ddct_bringup.campaign_report.results import Results
-from ddct_bringup.campaign_report.statistics.outcome import FAILED, Outcomes, count_outcomes
 from ddct_bringup.documents.page_parts import unit_text
+from ddct_bringup.evaluation.grouped_rows import GroupedRows
+from ddct_bringup.evaluation.share import FAILED, Share
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
 FAILED_SHARE = 'failed_share'
@@ -32,7 +32,7 @@ _DIGITS, _PLACE_DIGITS = 4, 9
 """Significant digits of values and of coordinates."""
 
 
-def campaign_maps(results: Results) -> CampaignMaps | None:
+def campaign_maps(results: GroupedRows) -> CampaignMaps | None:
     """
     Return the maps of the page as JSON content; None where no number was varied.
 
@@ -65,11 +65,11 @@ def campaign_maps(results: Results) -> CampaignMaps | None:
     )
 
 
-def _on_grid(results: Results, keys: Sequence[str]) -> bool:
-    return all(key in results.grid for key in keys)
+def _on_grid(results: GroupedRows, keys: Sequence[str]) -> bool:
+    return all(key in results.by.grid for key in keys)
 
 
-def _scales(results: Results) -> list[MapScale]:
+def _scales(results: GroupedRows) -> list[MapScale]:
     """Return the ends of each quantity's colour scale: magnitudes of the engaged runs."""
     engaged = results.outcomes == ENGAGED
     found: list[MapScale] = []
@@ -82,7 +82,7 @@ def _scales(results: Results) -> list[MapScale]:
     return found
 
 
-def _cells(results: Results, keys: Sequence[str]) -> CellMap:
+def _cells(results: GroupedRows, keys: Sequence[str]) -> CellMap:
     """Return a map over the grid."""
     parts = [
         results.alike(results.others_nominal(group.rows, keys), keys) for group in results.groups
@@ -98,7 +98,7 @@ def _cells(results: Results, keys: Sequence[str]) -> CellMap:
 
 
 def _points(
-    results: Results, pairs: Sequence[Sequence[str]]
+    results: GroupedRows, pairs: Sequence[Sequence[str]]
 ) -> tuple[list[MapPanel] | None, list[PointMap]]:
     """Return the points of each group in maps of samples, and these maps."""
     if not pairs:
@@ -134,7 +134,7 @@ def _evenly(rows: np.ndarray) -> np.ndarray:
     return rows[np.arange(MOST_POINTS) * len(rows) // MOST_POINTS]
 
 
-def _others(results: Results, keys: Sequence[str]) -> dict[str, float]:
+def _others(results: GroupedRows, keys: Sequence[str]) -> dict[str, float]:
     return {key: results.start_of(key) for key in results.others(keys)}
 
 
@@ -144,7 +144,7 @@ def _extent(drawn: int, runs: int) -> str:
 
 
 def _panel(
-    results: Results, parts: Sequence[np.ndarray] | np.ndarray, keys: Sequence[str]
+    results: GroupedRows, parts: Sequence[np.ndarray] | np.ndarray, keys: Sequence[str]
 ) -> MapPanel:
     """Return the cells or points of one group, column by column."""
     counts = _counts(results.outcomes, parts)
@@ -155,9 +155,9 @@ def _panel(
     return MapPanel(
         at=[_places(results.columns[key], parts) for key in keys],
         runs=[len(rows) for rows in parts],
-        failed=[each.failed for each in counts],
-        invalid=[each.invalid for each in counts],
-        intervals=[each.failed_share.interval() for each in counts] if repeated else None,
+        failed=[failed for failed, _ in counts],
+        invalid=[invalid for _, invalid in counts],
+        intervals=_intervals(parts, counts) if repeated else None,
         state=[str(states[row]) for row in marking],
         index=[int(index[row]) for row in marking],
         values={key: [value for value, _ in found] for key, found in worst.items()},
@@ -167,21 +167,36 @@ def _panel(
     )
 
 
-def _counts(outcomes: np.ndarray, parts: Sequence[np.ndarray] | np.ndarray) -> Sequence[Outcomes]:
-    """Return the counts of outcomes in each cell, or of each point, which is one run."""
-    if isinstance(parts, np.ndarray):
-        of_one = {each: count_outcomes(np.array([each])) for each in set(outcomes.tolist())}
-        return [of_one[each] for each in outcomes[parts[:, 0]].tolist()]
-    return [count_outcomes(outcomes[rows]) for rows in parts]
+def _counts(
+    outcomes: np.ndarray, parts: Sequence[np.ndarray] | np.ndarray
+) -> list[tuple[int, int]]:
+    """Return the numbers of failed and of invalid runs in each cell, or of each point."""
+    if isinstance(parts, np.ndarray):  # a point is one run
+        return [(int(each == FAILED), int(each == INVALID)) for each in outcomes[parts[:, 0]]]
+    return [
+        (int(np.sum(outcomes[rows] == FAILED)), int(np.sum(outcomes[rows] == INVALID)))
+        for rows in parts
+    ]
 
 
-def _marking(results: Results, rows: np.ndarray) -> int:
+def _intervals(
+    parts: Sequence[np.ndarray] | np.ndarray, counts: Sequence[tuple[int, int]]
+) -> list[tuple[float | None, float | None]]:
+    """Return the ends of the interval of the share of failed runs in each cell."""
+    shares = (
+        Share.in_sample(failed, len(rows) - invalid, invalid)
+        for rows, (failed, invalid) in zip(parts, counts, strict=True)
+    )
+    return [(share.low, share.high) for share in shares]
+
+
+def _marking(results: GroupedRows, rows: np.ndarray) -> int:
     """Return the run that marks a cell: the first invalid one, else the first failed one."""
     return min(rows.tolist(), key=lambda row: _FIRST.index(results.outcomes[row]))
 
 
 def _worst(
-    results: Results, key: str, parts: Sequence[np.ndarray] | np.ndarray
+    results: GroupedRows, key: str, parts: Sequence[np.ndarray] | np.ndarray
 ) -> list[tuple[float | None, int | None]]:
     """Return per cell the value of largest magnitude of its valid runs, and that run's index."""
     values = np.where(results.outcomes == INVALID, np.nan, results.columns[key])

@@ -8,13 +8,10 @@ from pathlib import Path
 from typing import TypeVar
 
 from ddct_bringup.campaign_report import texts
-from ddct_bringup.campaign_report.summary_types import (
-    GroupSummary,
-    Quantiles,
-    QuantitySummary,
-    Summary,
-)
-from ddct_bringup.metrics.catalogue import FIGURES, METRICS, TABLE_5_1
+from ddct_bringup.evaluation.quantities import QUANTITIES
+from ddct_bringup.evaluation.spread import Quantiles, QuantitySummary, RunValue
+from ddct_bringup.evaluation.summary import GroupSummary, Summary
+from ddct_bringup.metrics.catalogue import FIGURES, TABLE_5_1
 from ddct_plant.program.printed_table import print_note, print_tables
 from ddct_plant.program.table import UNDEFINED, Table, Weight, text_or_dash, with_reasons
 
@@ -60,16 +57,15 @@ def print_summary(summary: Summary, folder: Path) -> None:
 def _failed(summary: Summary) -> Table:
     rows = [
         (
-            texts.label_of(group),
-            texts.share_text(failed.share),
-            texts.interval_text(failed.interval),
-            *map(str, (failed.runs, failed.engaged, failed.failed, failed.invalid)),
-            texts.states_text(failed) or UNDEFINED,
+            group.label,
+            group.failed.text,
+            group.failed.interval_text,
+            *map(str, (group.runs, group.engaged.count, group.failed.count, group.invalid)),
+            texts.states_text(group) or UNDEFINED,
         )
         for group in summary.groups
-        for failed in [group.failed]
     ]
-    method = summary.interval.method
+    method = summary.method.share_interval
     headers = 'controller', 'failed', '95 % interval', 'runs', 'engaged', 'failed', 'invalid', 'as'
     title = f'How often engagement fails (intervals: {method})'
     weights = (
@@ -83,7 +79,7 @@ def _boundaries(summary: Summary) -> Iterator[Table]:
     rows = [
         (
             found.key,
-            texts.label_of(group),
+            group.label,
             texts.value_text(found.start),
             *(
                 text(side)
@@ -105,7 +101,7 @@ def _boundaries(summary: Summary) -> Iterator[Table]:
 def _attribution(summary: Summary) -> Iterator[Table]:
     rows = [
         (
-            texts.label_of(group),
+            group.label,
             each.key,
             'yes' if each.drives else 'no evidence',
             f'{each.explained:.2f}',
@@ -114,8 +110,8 @@ def _attribution(summary: Summary) -> Iterator[Table]:
             texts.part_text(each.worst_part) if each.drives else UNDEFINED,
         )
         for group in summary.groups
-        if group.attribution
-        for each in group.attribution.keys
+        if group.causes
+        for each in group.causes.keys
     ]
     headers = (
         *('controller', 'key', 'drives failure', 'explains', '95 % interval', 'p'),
@@ -136,8 +132,8 @@ def _by_place(
 def _quantities(summary: Summary) -> Table:
     """Return the table of the figures and metrics that a run has."""
     rows = [
-        _quantity(texts.label_of(group), found)
-        for group, found in _by_place(summary, lambda group: group.quantities)
+        _quantity(group.label, name, found)
+        for group, (name, found) in _by_place(summary, lambda group: [*group.quantities.items()])
     ]
     headers = (
         *('quantity', 'controller', 'n', 'P5', 'P50', 'P95', 'CVaR', 'worst engaged', 'run'),
@@ -155,21 +151,24 @@ def _quantile_cells(found: Quantiles, form: str) -> Iterator[str]:
     return (text_or_dash(value, form) for value in (found.p5, found.p50, found.p95))
 
 
-def _quantity(label: str, found: QuantitySummary) -> Sequence[str]:
-    metric = METRICS[found.name]
-    worst = found.worst
-    engaged = found.worst_engaged
+def _quantity(label: str, name: str, found: QuantitySummary) -> Sequence[str]:
+    quantity = QUANTITIES[name]
+    engaged, worst = found.worst_engaged, found.worst
     return (
-        metric.heading,
+        quantity.heading,
         label,
         str(found.with_value),
-        *_quantile_cells(found.quantiles, metric.form),
-        text_or_dash(found.cvar_engaged, metric.form),
-        text_or_dash(engaged.value, metric.form),
-        text_or_dash(engaged.index, 'd'),
-        text_or_dash(worst.value, metric.form),
-        UNDEFINED if worst.index is None else f'{worst.index} ({texts.state_text(worst.state)})',
+        *_quantile_cells(found.quantiles, quantity.form),
+        text_or_dash(found.cvar_engaged, quantity.form),
+        _value(engaged, quantity.form),
+        str(engaged.index) if engaged else UNDEFINED,
+        _value(worst, quantity.form),
+        f'{worst.index} ({texts.state_text(worst.state)})' if worst else UNDEFINED,
     )
+
+
+def _value(found: RunValue | None, form: str) -> str:
+    return UNDEFINED if found is None else f'{found.value:{form}}'
 
 
 def _differences(summary: Summary) -> Iterator[Table]:
@@ -180,24 +179,22 @@ def _differences(summary: Summary) -> Iterator[Table]:
     pairs = [pair for pair in summary.pairs if pair.first == first]
     rows = [
         (
-            METRICS[found.name].heading,
-            texts.pair_label(pair),
-            str(found.difference.cases),
-            *_quantile_cells(found.difference.quantiles, METRICS[found.name].form),
+            QUANTITIES[name].heading,
+            pair.label,
+            str(found.cases),
+            *_quantile_cells(found.quantiles, form),
             UNDEFINED
-            if found.difference.interval is None
-            else ' to '.join(
-                f'{end:{METRICS[found.name].form}}' for end in found.difference.interval
-            ),
+            if found.interval is None
+            else ' to '.join(f'{end:{form}}' for end in found.interval),
         )
         for name in MAIN
         for pair in pairs
-        for found in pair.differences
-        if found.name == name
+        if name in pair.differences
+        for found, form in [(pair.differences[name], QUANTITIES[name].form)]
     ]
     headers = 'quantity', 'controllers', 'cases', 'P5', 'P50', 'P95', '95 % interval of P50'
     title = 'Differences on the same cases, where both engaged (interval: sign test)'
     weights = (*_OF_TWO, Weight.USEFUL)
     yield Table(title, headers, rows, numbers=[False, False, *[True] * 4], weights=weights)
-    both = [(texts.pair_label(pair), texts.joint_outcomes_text(pair)) for pair in pairs]
+    both = [(pair.label, texts.joint_outcomes_text(pair)) for pair in pairs]
     yield Table('Cases of these differences', ('controllers', 'both engaged'), both)

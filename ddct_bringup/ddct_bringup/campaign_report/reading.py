@@ -7,14 +7,15 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 
-from ddct_bringup.campaign.arrow_columns import numpy_column, numpy_columns, read_parquet
+from ddct_bringup.campaign.arrow_columns import numpy_column, read_parquet
 from ddct_bringup.campaign.columns import COMPARED, CONTROLLER, INDEX, PATH, SCHEMA_VERSION
 from ddct_bringup.campaign.conduct import RESULTS
 from ddct_bringup.campaign.keys import COMMON, option_of
 from ddct_bringup.campaign.plan import RecordedCampaign
 from ddct_bringup.campaign.rows import STATE
 from ddct_bringup.campaign.spec import CampaignSpec
-from ddct_bringup.campaign_report.results import OtherVersion, Results
+from ddct_bringup.evaluation.grouped_rows import By, GroupedRows
+from ddct_bringup.evaluation.summary import OtherVersion
 from ddct_bringup.manifest.file_states import require_unaltered
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.input_file import SCHEMA_KEY, require_schema_version
@@ -90,10 +91,10 @@ def _require_single(table: pa.Table) -> None:
             raise ValueError(f'the column {field.name} is there twice')
 
 
-def results_of(recorded: RecordedCampaign, table: pa.Table) -> Results:
-    """Return the results from the rows and the manifest."""
-    columns = numpy_columns(table)
-    expected = (*REQUIRED, PATH, *COMPARED, *recorded.plan.grid, *recorded.plan.random)
+def grouped_rows(recorded: RecordedCampaign, table: pa.Table) -> GroupedRows:
+    """Return the rows of a campaign, grouped by what its manifest says was varied."""
+    plan, columns = recorded.plan, table.column_names
+    expected = (*REQUIRED, PATH, *COMPARED, *plan.grid, *plan.random)
     absent = tuple(name for name in COMPARED if name not in columns)
     unknown = tuple(name for name in columns if name not in expected)
     nominal: dict[str, float] = {}
@@ -103,7 +104,7 @@ def results_of(recorded: RecordedCampaign, table: pa.Table) -> Results:
     except DdctError as error:  # a key or a scenario of another version, or a file that is gone
         why = str(error)
     other = OtherVersion(absent, unknown, why)
-    return Results(columns, recorded.plan.grid, recorded.plan.random, nominal, other)
+    return GroupedRows(table, By(plan.grid, plan.random, nominal, other))
 
 
 def nominal_values(spec: CampaignSpec) -> dict[str, float]:

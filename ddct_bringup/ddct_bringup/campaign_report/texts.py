@@ -4,20 +4,14 @@
 
 import shlex
 
-from ddct_bringup.campaign_report.statistics.attribution import FEWEST
-from ddct_bringup.campaign_report.statistics.outcome import CONFIDENCE, METHOD
-from ddct_bringup.campaign_report.statistics.parts import MOST_PARTS, NamesPart, Part
-from ddct_bringup.campaign_report.statistics.spread import ONE_IN
-from ddct_bringup.campaign_report.summary_types import (
-    BoundarySide,
-    FailedSummary,
-    GroupSummary,
-    PairSummary,
-    PartSummary,
-    Summary,
-)
 from ddct_bringup.documents.page_parts import value_text
-from ddct_plant.program.table import UNDEFINED
+from ddct_bringup.evaluation.attribution import FEWEST
+from ddct_bringup.evaluation.boundaries import BoundarySide
+from ddct_bringup.evaluation.parts import MOST_PARTS, Part
+from ddct_bringup.evaluation.share import CONFIDENCE, METHOD
+from ddct_bringup.evaluation.spread import ONE_IN
+from ddct_bringup.evaluation.summary import GroupSummary, PairSummary, Summary
+from ddct_bringup.verdict.state import ENGAGED
 
 RULES = {
     'failed': 'The run is valid, and its state is not engaged. A metric beyond its limit is no '
@@ -62,34 +56,23 @@ def replay_command(folder: str, index: int | str) -> str:
     return shlex.join(['ddct', 'campaign', 'replay', folder, '--index', str(index), '--out', out])
 
 
-def share_text(share: float | None) -> str:
-    """Return a share in percent."""
-    return UNDEFINED if share is None else f'{100.0 * share:.1f} %'
-
-
-def interval_text(interval: tuple[float, float] | None) -> str:
-    """Return the ends of the interval of a share, or a dash."""
-    if interval is None:
-        return UNDEFINED
-    lower, upper = (100.0 * end for end in interval)
-    return f'{lower:.1f} to {upper:.1f} %'
-
-
-def states_text(failed: FailedSummary) -> str:
+def states_text(group: GroupSummary) -> str:
     """Return the numbers of runs in states other than engaged, with the shares of a sample."""
     return ', '.join(
-        f'{found.runs} {state_text(state)}'
-        + (f' ({interval_text(found.interval)})' if found.interval else '')
-        for state, found in failed.states.items()
-        if state != 'engaged'
+        f'{found.count} {state_text(state)}'
+        + (f' ({found.interval_text})' if found.low is not None else '')
+        for state, found in group.states.items()
+        if state != ENGAGED
     )
 
 
 def boundary_text(side: BoundarySide) -> str:
     """Return the first failure on one side of a line."""
-    if side.first_failure is None:
+    if side.first_failure is None or side.failed is None:
         return 'no run on this side' if side.last_good is None else 'none in the range'
-    several = f', {side.failed} of {side.runs} runs' if side.runs > 1 else ''
+    several = ''
+    if side.failed.of > 1:
+        several = f', {side.failed.count} of {side.failed.of} runs'
     first = _apart(side.first_failure, side.last_good)
     return f'{first} ({state_text(side.state)}, run {side.index}{several})'
 
@@ -123,7 +106,7 @@ def range_text(low: float, high: float) -> str:
 
 def where_text(part: Part) -> str:
     """Return a part of a key's values: the ends of a range, or names."""
-    if isinstance(part, NamesPart):
+    if part.low is None or part.high is None:
         return ', '.join(part.names)
     return range_text(part.low, part.high)
 
@@ -133,24 +116,14 @@ def p_text(p_value: float) -> str:
     return '< 0.001' if p_value < 0.001 else f'{p_value:.3f}'
 
 
-def part_text(part: PartSummary) -> str:
-    """Return the part of a key's range in which failure is most frequent."""
-    return f'{part.failed} of {part.runs} at {range_text(part.low, part.high)}'
+def part_text(part: Part) -> str:
+    """Return the part of a key's values in which failure is most frequent."""
+    return f'{part.failed.count} of {part.failed.of} at {where_text(part)}'
 
 
 def state_text(state: str | None) -> str:
     """Return the name of a state as text, empty without one."""
     return (state or '').replace('_', ' ')
-
-
-def label_of(group: GroupSummary) -> str:
-    """Return the label of a group of a summary in tables."""
-    return ', '.join([group.controller, *group.varied.values()])
-
-
-def pair_label(pair: PairSummary) -> str:
-    """Return the label of a pair of controllers in tables."""
-    return ', '.join([f'{pair.first} less {pair.second}', *pair.varied.values()])
 
 
 def joint_outcomes_text(pair: PairSummary) -> str:
@@ -167,13 +140,13 @@ def notes_of(summary: Summary) -> list[str]:
     other = summary.other_version
     found = [
         f'no interval: {reason}'
-        for reason in dict.fromkeys(each.failed.no_interval for each in summary.groups)
+        for reason in dict.fromkeys(each.no_interval for each in summary.groups)
         if reason
     ]
     found += [
-        f'{label_of(group)}: {group.attribution.too_few}'
+        f'{group.label}: {group.causes.too_few}'
         for group in summary.groups
-        if group.attribution and group.attribution.too_few
+        if group.causes and group.causes.too_few
     ]
     if other.absent:
         found.append(f'results of another version, without {", ".join(other.absent)}')

@@ -111,8 +111,8 @@ def _complaints(result: 'shell.Result') -> bool:
         if judged.error:
             complain(PROGRAM, f'{name}: {judged.error}')
             found = True
-        elif judged.held_out and judged.held_out[0].states.keys() == {'invalid'}:
-            reason = judged.held_out[0].reasons[0].reason
+        elif judged.held_out and not judged.held_out.group(name).states:
+            reason = judged.held_out.group(name).reasons[0].reason
             complain(PROGRAM, f'{name}: every held-out run is invalid, such as: {reason}')
             found = True
     return found

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_bringup.benchmark.comparison import gaps_between
-from ddct_bringup.benchmark.result_types import Gap
-from ddct_bringup.campaign.arrow_columns import numpy_columns
+from ddct_bringup.evaluation.held_out_gaps import Gap
+from ddct_bringup.evaluation.summarise import gaps_between
 from ddct_bringup.tuning.front import best_of
 from ddct_bringup.tuning.specification.goals import RunColumns
 from ddct_bringup.tuning.specification.spec import TuningSpec
@@ -96,7 +95,7 @@ class TuningResult:
     front: list[FrontEntry]
     before: FrontEntry | None
     """The first trial, if it has the values from before the tuning."""
-    gaps: list[Gap]
+    gaps: tuple[Gap, ...]
     """Differences of the best trial between development and held-out cases, tested."""
     importances: Mapping[str, Mapping[str, float]]
     """By objective how much each parameter decides it, the most first; their sum is 1."""
@@ -132,7 +131,7 @@ def result_of(
         best_file=BEST,
         front=[_entry(spec, each, held_out.get(each.number)) for each in front],
         before=_entry(spec, trials[0], held_out.get(0)) if tuning.present else None,
-        gaps=gaps_between(*(numpy_columns(e.rows) for e in (best, held_out[best.number]))),
+        gaps=gaps_between(best.rows, held_out[best.number].rows),
         importances={
             goal.name: study.importances(place) for place, goal in enumerate(spec.objectives)
         },

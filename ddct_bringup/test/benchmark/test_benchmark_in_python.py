@@ -10,6 +10,7 @@ from small_benchmark import use_small_release
 
 from ddct_bringup.api import DdctError, benchmark
 from ddct_bringup.benchmark.file_names import RESULT
+from ddct_bringup.evaluation.quantities import MAIN
 
 pytestmark = pytest.mark.slow
 GAIN = """\
@@ -30,12 +31,18 @@ def test_the_table_has_the_shares_and_medians_of_the_result_in_its_folder(
     assert json.loads(json.dumps(found.result)) == json.loads(written)
     assert list(found.table.index) == ['gain', 'pi', 'ls8']
     (judged,) = found.result['controllers']
-    for part in ('development', 'held_out'):
-        for each in judged[part]:
+    names = ('gain', 'pi', 'ls8')
+    for part, summary in (
+        ('development', found.result['development']),
+        ('held_out', judged['held_out']),
+    ):
+        groups = [each for each in summary['groups'] if each['controller'] in names]
+        assert [each['controller'] for each in groups] == [*names]
+        for each in groups:
             row = found.table.loc[each['controller']]
-            assert row[f'{part}.success'] == each['success']['share']
-            for figure in each['quantities'][:5]:
-                assert row[f'{part}.{figure["name"]}'] == figure['p50']
+            assert row[f'{part}.success'] == each['engaged']['count'] / each['engaged']['of']
+            for name in MAIN:
+                assert row[f'{part}.{name}'] == each['quantities'][name]['p50']
     assert found.page.is_file()
 
 

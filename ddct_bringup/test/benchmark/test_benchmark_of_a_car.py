@@ -52,12 +52,11 @@ def test_the_controllers_beside_run_in_the_development_cases_of_the_car(place: P
     assert found['release_rows'] is None
     assert found['left_out'].keys() == {'tip_in'}
     (judged,) = result['controllers']
-    for part in ('development', 'held_out'):
-        assert [(each['controller'], each['runs']) for each in judged[part]] == [
+    for summary in (result['development'], judged['held_out']):
+        assert [(each['controller'], each['runs']) for each in summary['groups']] == [
             *(('ls4', 2), ('pi', 2), ('ls8', 2))
         ]
-    assert [row['controller'] for row in result['board']] == ['ls4', 'pi', 'ls8']
-    assert [pair['other'] for pair in judged['dominance']] == ['pi', 'ls8']
+        assert [pair['second'] for pair in summary['pairs']] == ['pi', 'ls8']
     assert not (place / 'first' / ROWS).exists()
     page = (place / 'first' / PAGE).read_text(encoding='utf-8')
     assert 'the car of all cases is inputs/car/mine.yaml' in page

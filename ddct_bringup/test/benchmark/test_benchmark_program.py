@@ -28,13 +28,13 @@ from verified import copied, edit_json_with_digest, edit_manifest, states, verif
 
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.conduct import AGAIN, Options, carry_out_benchmark
-from ddct_bringup.benchmark.evaluated import MAIN
 from ddct_bringup.benchmark.file_names import PAGE, RESULT
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.benchmark.release import ROWS, write_release_rows
 from ddct_bringup.benchmark.report import page as page_module
 from ddct_bringup.benchmark.report.rules import NO_GAIN, left_open_here, states_that_count
 from ddct_bringup.benchmark.result_types import Result
+from ddct_bringup.evaluation.quantities import MAIN
 from ddct_bringup.manifest.manifest import MANIFEST
 from ddct_bringup.manifest.origin import CodeOrigin
 from ddct_bringup.run.timing_and_failure import TIMING_FILE
@@ -67,33 +67,32 @@ def test_a_controller_that_remembers_the_development_cases_is_worse_on_held_out_
 ) -> None:
     result = result_in(place / 'first')
     (judged,) = result['controllers']
-    ours, theirs = judged['development'], judged['held_out']
-    assert (ours[0]['controller'], ours[0]['success']['runs']) == (NAME, 6)
-    assert theirs[0]['success']['runs'] == 0
-    assert theirs[0]['success']['interval'][1] < ours[0]['success']['interval'][0]
+    ours, theirs = result['development']['groups'], judged['held_out']['groups']
+    assert (ours[0]['controller'], ours[0]['engaged']['count']) == (NAME, 6)
+    assert theirs[0]['engaged']['count'] == 0
+    assert theirs[0]['engaged']['high'] < ours[0]['engaged']['low']
     assert [(gap['name'], gap['differs'], gap['worse']) for gap in judged['gaps']] == [
         (name, True, 1.0) for name in MAIN
     ]
     assert 'worse on held-out cases, beyond chance' in (place / 'first' / PAGE).read_text()
     # The others are as good in both, so the held-out cases are not the harder ones.
-    assert [each['success']['runs'] for each in (*ours[1:], *theirs[1:])] == [6] * 4
-    assert [pair['second_only'] for pair in judged['held_out_pairs']] == [6, 6]
+    assert [each['engaged']['count'] for each in (*ours[1:3], *theirs[1:])] == [6] * 4
+    assert [pair['second_only'] for pair in judged['held_out']['pairs']] == [6, 6]
 
 
 def test_the_board_has_every_controller_with_its_figures_and_who_dominates_it(
     place: Path,
 ) -> None:
     result = result_in(place / 'first')
-    assert [row['controller'] for row in result['board']] == [NAME, 'pi', 'ls8', 'hinf1']
-    assert [row['dominated_by'] for row in result['board']] == [[]] * 4  # six cases say nothing
-    names = [each['name'] for each in result['board'][2]['quantities']]
-    assert names == [*MAIN]
-    assert result['method']['dominance_level'] == pytest.approx(0.05 / (5 * 4 * 3))
-    (judged,) = result['controllers']
-    assert [(pair['other'], pair['cases']) for pair in judged['dominance']] == [
+    board, pairs = result['development']['groups'], result['development']['pairs']
+    assert [row['controller'] for row in board] == [NAME, 'pi', 'ls8', 'hinf1']
+    assert [row['dominated_by'] for row in board] == [[]] * 4  # six cases say nothing
+    assert {*MAIN} <= board[2]['quantities'].keys()
+    assert result['comparison']['dominance_level'] == pytest.approx(0.05 / (5 * 4 * 3))
+    assert [(pair['second'], pair['comparison']['cases']) for pair in pairs] == [
         (name, 6) for name in ('pi', 'ls8', 'hinf1')
     ]
-    of_ls8 = judged['dominance'][1]['figures']  # the same runs, as it plays them back
+    of_ls8 = pairs[1]['comparison']['figures'].values()  # the same runs, as it plays them back
     assert [(each['better'], each['worse'], each['left_out']) for each in of_ls8] == [
         (0, 0, 0)
     ] * 5
@@ -188,7 +187,7 @@ def _root(content: Any) -> None:
 
 
 def _share(content: Any) -> None:
-    content['controllers'][0]['held_out'][0]['success']['runs'] = 6
+    content['controllers'][0]['held_out']['groups'][0]['engaged']['count'] = 6
 
 
 @pytest.mark.parametrize(
@@ -234,11 +233,9 @@ def test_a_quick_benchmark_by_the_seed_of_a_judge_is_marked_and_has_no_dominance
     page = (tmp_path / 'judged' / PAGE).read_text(encoding='utf-8')
     assert 'those of a judge: --seed 7' in page
     assert 'a quick benchmark' in page
-    assert (result['controllers'][0]['dominance'], result['method']['dominance_level']) == (
-        None,
-        None,
-    )
-    assert {row['dominated_by'] for row in result['board']} == {None}
+    assert result['comparison']['dominance_level'] is None
+    assert {row['dominated_by'] for row in result['development']['groups']} == {None}
+    assert {pair['comparison'] for pair in result['development']['pairs']} == {None}
     assert 'Who dominates whom' not in page
     printed = capfd.readouterr().out
     assert 'left out' not in printed
@@ -255,7 +252,7 @@ def test_a_controller_that_fails_in_every_case_is_one_line_and_its_rows_stay(
     errors = capfd.readouterr().err.splitlines()
     (line,) = [each for each in errors if each.startswith('ddct benchmark')]
     assert 'Fails: every held-out run is invalid, such as: ' in line
-    assert result_in(out)['controllers'][0]['held_out'][0]['states']['invalid']['runs'] == 2
+    assert result_in(out)['controllers'][0]['held_out']['groups'][0]['invalid'] == 2
 
 
 def test_rows_of_the_release_that_other_code_computed_are_named_wherever_the_result_is_read(

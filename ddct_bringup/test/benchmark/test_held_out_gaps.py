@@ -9,8 +9,8 @@ import pytest
 import scipy
 from made_benchmarks import IN_SCENARIO, MadeBenchmark, flagged_draws
 
-from ddct_bringup.benchmark.statistics.case_figures import FIGURES, CaseFigures
-from ddct_bringup.benchmark.statistics.held_out_gaps import gaps_of, van_elteren
+from ddct_bringup.evaluation.case_figures import FIGURES, CaseFigures
+from ddct_bringup.evaluation.held_out_gaps import gaps_of, van_elteren
 
 
 def z_of(p_value: float | None) -> float:
@@ -159,7 +159,7 @@ def test_more_failures_are_a_gap_even_where_every_success_is_equal() -> None:
         (CaseFigures(success, np.where(success, equal, np.nan)), np.arange(100) % 4),
     )
     assert all(each.differs for each in found)
-    assert [each.null for each in found] == [0] * 5
+    assert [each.left_out for each in found] == [0] * 5
     assert found[0].worse == pytest.approx(0.56)
 
 
@@ -169,8 +169,8 @@ def test_successes_without_a_value_are_left_out_and_counted() -> None:
     ours = CaseFigures(np.ones(10, bool), values)
     response, jerk, *_ = gaps_of((ours, np.zeros(10)), (ours, np.zeros(10)))
     assert (response.p_value, response.worse, response.differs) == (None, None, False)
-    assert response.null == 20
-    assert (jerk.p_value, jerk.worse, jerk.null) == (1.0, 0.5, 0)
+    assert response.left_out == 20
+    assert (jerk.p_value, jerk.worse, jerk.left_out) == (1.0, 0.5, 0)
 
 
 def test_the_order_of_cases_and_scenarios_does_not_matter() -> None:

@@ -9,8 +9,8 @@ import pytest
 import scipy
 from made_benchmarks import COPIES, MadeBenchmark, draws_with_a_dominated_copy
 
-from ddct_bringup.benchmark.statistics.case_figures import FIGURES, CaseFigures
-from ddct_bringup.benchmark.statistics.dominance import (
+from ddct_bringup.evaluation.case_figures import FIGURES, CaseFigures
+from ddct_bringup.evaluation.dominance import (
     compare,
     dominators_of,
     level_among,
@@ -33,8 +33,8 @@ def figures_of(
 
 def counts(first: CaseFigures, second: CaseFigures, name: str) -> tuple[int, int, int]:
     """Return in how many cases the first is better, worse, and left out."""
-    found = compare(first, second).figures[NAMES.index(name)]
-    return found.better, found.worse, found.null
+    found = compare(first, second).figures[name]
+    return found.better, found.worse, found.left_out
 
 
 def test_the_response_is_both_times_and_null_without_one_of_them() -> None:
@@ -86,7 +86,9 @@ def test_a_failure_is_worse_than_any_success_and_two_failures_tie() -> None:
     ours = figures_of([True, False, False, True], cases=4, plain=1e9)
     theirs = figures_of([False, True, False, True], cases=4, plain=0.0, releases=1e9)
     found = compare(ours, theirs)
-    assert [(each.better, each.worse) for each in found.figures] == [(1, 2)] * 4 + [(1, 1)]
+    assert [(each.better, each.worse) for each in found.figures.values()] == [(1, 2)] * 4 + [
+        (1, 1)
+    ]
     missing = figures_of(False, cases=4, plain=np.nan)
     assert counts(missing, theirs, 'releases') == (0, 2, 0)
     assert found.cases == 4
@@ -129,25 +131,26 @@ def test_one_figure_that_is_worse_at_5_percent_prevents_it() -> None:
 def test_a_median_difference_that_is_worse_prevents_it() -> None:
     ours = figures_of(peak_jerk_m_s3=90.0, friction_work_j=100.001)
     found = compare(ours, figures_of())
-    assert found.figures[WORK].median_difference == pytest.approx(0.001)
-    assert found.figures[WORK].p_worse == 1.0
+    assert found.figures[NAMES[WORK]].median_difference == pytest.approx(0.001)
+    assert found.figures[NAMES[WORK]].p_worse == 1.0
     assert not found.dominates(among=2)
 
 
 def test_the_median_difference_counts_failures_as_infinite_and_leaves_null_cases_out() -> None:
-    def median(ours: CaseFigures, theirs: CaseFigures) -> float:
-        return compare(ours, theirs).figures[JERK].median_difference
+    def median(ours: CaseFigures, theirs: CaseFigures) -> tuple[float | None, bool]:
+        found = compare(ours, theirs).figures[NAMES[JERK]]
+        return found.median_difference, found.worse_in_median
 
     plain = figures_of(cases=4)
-    assert median(figures_of([True, False, False, False], cases=4), plain) == np.inf
-    assert median(plain, figures_of([True, False, False, False], cases=4)) == -np.inf
+    assert median(figures_of([True, False, False, False], cases=4), plain) == (None, True)
+    assert median(plain, figures_of([True, False, False, False], cases=4)) == (None, False)
     ones, others = ([True, True, False, False], [False, False, True, True])
-    assert median(figures_of(ones, cases=4), figures_of(others, cases=4)) == 0.0
+    assert median(figures_of(ones, cases=4), figures_of(others, cases=4)) == (0.0, False)
     values = [np.nan, 101.0, 103.0, 109.0]
     theirs = figures_of(cases=4, peak_jerk_m_s3=[np.nan, 100.0, 100.0, 100.0])
-    assert median(figures_of(cases=4, peak_jerk_m_s3=values), theirs) == 3.0
+    assert median(figures_of(cases=4, peak_jerk_m_s3=values), theirs) == (3.0, True)
     null = figures_of(cases=4, peak_jerk_m_s3=np.nan)
-    assert median(null, null) == 0.0
+    assert median(null, null) == (0.0, False)
 
 
 def test_more_controllers_need_more_cases() -> None:
@@ -156,10 +159,10 @@ def test_more_controllers_need_more_cases() -> None:
         'better': figures_of(cases=9, peak_jerk_m_s3=90.0),
         'other': figures_of(cases=9),
     }
-    assert dominators_of(controllers) == {'better': [], 'other': ['better']}
+    assert dominators_of(controllers) == {'better': (), 'other': ('better',)}
     controllers['third'] = figures_of(cases=9, plain=1000.0)
     found = dominators_of(controllers)
-    assert found == {'better': [], 'other': [], 'third': []}  # 1/512 > .05 / (5 * 3 * 2)
+    assert found == {'better': (), 'other': (), 'third': ()}  # 1/512 > .05 / (5 * 3 * 2)
     assert level_among(31) == pytest.approx(0.05 / (5 * 31 * 30))
 
 
@@ -175,9 +178,13 @@ def test_two_controllers_are_compared_alike_in_both_orders() -> None:
     made = MadeBenchmark(np.random.default_rng(4))
     ours, theirs = made.run(), made.run()
     for one, other in zip(
-        compare(ours, theirs).figures, compare(theirs, ours).figures, strict=True
+        compare(ours, theirs).figures.values(),
+        compare(theirs, ours).figures.values(),
+        strict=True,
     ):
-        assert (one.better, one.worse, one.null) == (other.worse, other.better, other.null)
+        assert (one.better, one.worse, one.left_out) == (other.worse, other.better, other.left_out)
+        assert one.median_difference is not None
+        assert other.median_difference is not None
         assert one.median_difference == -other.median_difference
         assert one.better
         assert one.worse
@@ -198,4 +205,4 @@ def test_any_of_thirty_copies_is_seldom_dominated() -> None:
 def test_a_copy_with_a_tenth_less_jerk_has_significantly_less() -> None:
     made = MadeBenchmark(np.random.default_rng(2))
     better = made.better(made.run(), figure=JERK, by=0.1)
-    assert compare(better, made.run()).figures[JERK].p_better < 1e-6
+    assert compare(better, made.run()).figures[NAMES[JERK]].p_better < 1e-6

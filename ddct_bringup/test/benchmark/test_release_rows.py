@@ -71,7 +71,7 @@ def test_a_quick_benchmark_has_the_first_tenth_of_the_cases(release: ReleaseRows
         assert quick.run(case).settings == same.settings
     rows = release.of(Cases.packaged(quick=True)).rows
     wear = [quick.run(case).varied['wear_gain'] for case in range(quick.cases)]
-    assert rows.of('pi')['wear_gain'].tolist() == wear
+    assert rows.only(['pi']).rows['wear_gain'].to_pylist() == wear
 
 
 def test_the_release_has_every_packaged_controller_in_every_case(release: ReleaseRows) -> None:
@@ -79,7 +79,7 @@ def test_the_release_has_every_packaged_controller_in_every_case(release: Releas
     assert list(release.rows.controllers) == own_controller_names()
     assert release.rows.cases == campaign.cases
     assert release.cases_digest == Cases.packaged().digest
-    assert {*columns_kept(campaign.spec)} == {*release.rows.table.column_names}
+    assert {*columns_kept(campaign.spec)} == {*release.rows.rows.column_names}
 
 
 def test_a_sample_of_the_rows_comes_out_again_within_the_bound(release: ReleaseRows) -> None:
@@ -96,12 +96,9 @@ def test_a_sample_of_the_rows_comes_out_again_within_the_bound(release: ReleaseR
         (run,) = campaign.planned(index, index + 1)
         (found,) = scorer.scored([run])
         (row,) = runs_table(schema_of(campaign.spec), [found]).to_pylist()
-        columns = release.rows.of(names[place])
-        for name in (each for each in kept if each in columns):
-            value = columns[name][case]
-            ours = None if isinstance(value, float) and np.isnan(value) else value
-            ours = ours.item() if isinstance(ours, np.generic) else ours
-            ours = None if isinstance(ours, float) and np.isnan(ours) else ours
+        columns = release.rows.only([names[place]]).rows
+        for name in (each for each in kept if each in columns.column_names):
+            ours = columns[name][case].as_py()
             comparison.add({'row': index, 'column': name}, ours, plain_json(row[name]))
     assert comparison.beyond is None
 

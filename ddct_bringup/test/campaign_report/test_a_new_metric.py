@@ -12,8 +12,9 @@ from ddct_bringup.api import read_campaign
 from ddct_bringup.campaign import columns
 from ddct_bringup.campaign.columns import compared_in, differences, read_row
 from ddct_bringup.campaign.conduct import RESULTS
-from ddct_bringup.campaign_report import reading, results
-from ddct_bringup.campaign_report.evaluated_quantities import QUANTITIES
+from ddct_bringup.campaign_report import reading
+from ddct_bringup.evaluation import grouped_rows
+from ddct_bringup.evaluation.quantities import OF_RUNS
 from ddct_bringup.metrics.catalogue import JERK_OVER_LEAST, METRICS
 from ddct_bringup.programs.campaign import main
 from ddct_plant.program.table import Quantity
@@ -28,7 +29,7 @@ def finished(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     compared = (*columns.COMPARED, NEW.key)
     for module in (columns, reading):
         monkeypatch.setattr(module, 'COMPARED', compared)
-    monkeypatch.setattr(results, 'QUANTITIES', (*results.QUANTITIES, NEW))
+    monkeypatch.setattr(grouped_rows, 'QUANTITIES', {**grouped_rows.QUANTITIES, NEW.key: NEW})
     return made
 
 
@@ -38,7 +39,7 @@ def test_it_is_shown_and_names_the_metric_that_it_lacks(
     before = (finished / RESULTS).read_bytes()
     summary = read_campaign(finished).summary
     assert summary['other_version']['absent'] == [NEW.key]
-    assert NEW.key not in {each['name'] for each in summary['groups'][0]['quantities']}
+    assert NEW.key not in summary['groups'][0]['quantities']
     assert main(['show', str(finished)]) == 0
     printed = capsys.readouterr().out
     assert f'results of another version, without {NEW.key}' in printed
@@ -55,6 +56,6 @@ def test_a_row_without_it_is_compared_with_its_run_made_again(finished: Path) ->
 def test_a_metric_of_which_less_is_not_better_is_not_summarised() -> None:
     assert not METRICS['steps'].smaller_is_better
     of_runs = [each for each in METRICS.values() if not each.from_timing]
-    assert [each.key for each in QUANTITIES] == [
+    assert [*OF_RUNS] == [
         each.key for each in of_runs if each.smaller_is_better and each is not JERK_OVER_LEAST
     ]

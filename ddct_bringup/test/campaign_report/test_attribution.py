@@ -9,11 +9,12 @@ import pytest
 from made_failures import KEYS, NAMES, RUNS, blamed, covered_effects, drawn, wrongly_blamed
 from made_results import made_results
 
-from ddct_bringup.campaign_report.statistics import attribution as attribution_module
-from ddct_bringup.campaign_report.statistics.attribution import FEWEST, effects_of, too_few
-from ddct_bringup.campaign_report.statistics.parts import NamesPart, parts_of, worst_of
-from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.campaign_report.texts import p_text
+from ddct_bringup.evaluation import attribution as attribution_module
+from ddct_bringup.evaluation.attribution import FEWEST, effects_of, too_few
+from ddct_bringup.evaluation.parts import Part, parts_of, worst_of
+from ddct_bringup.evaluation.share import Share
+from ddct_bringup.evaluation.summarise import summary_of
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_plant.files.json_records import to_json
 
@@ -25,7 +26,7 @@ def attribution(values, failed, **invalid):
     for row in invalid.get('rows', ()):
         states[row] = INVALID
     results = made_results(states.tolist(), values, random=list(values))
-    return to_json(summary_of(results))['groups'][0]['attribution']
+    return to_json(summary_of(results))['groups'][0]['causes']
 
 
 def test_failures_that_wear_alone_causes_are_attributed_to_wear_and_to_no_other_key():
@@ -35,7 +36,10 @@ def test_failures_that_wear_alone_causes_are_attributed_to_wear_and_to_no_other_
     assert (first['key'], first['drives']) == ('wear_gain', True)
     assert first['explained'] > 0.8
     assert first['interval'][0] > 0.5
-    assert (first['worst_part']['failed'], first['worst_part']['runs']) == (40, 40)
+    assert (first['worst_part']['failed']['count'], first['worst_part']['failed']['of']) == (
+        40,
+        40,
+    )
     assert first['worst_part']['high'] < 0.11
     assert len(others) == len(KEYS) - 1
     assert not any(each['drives'] for each in others)
@@ -94,7 +98,7 @@ def test_the_interval_covers_the_main_effect():
 def test_invalid_runs_take_no_part():
     values = drawn(7)
     found = attribution(values, values['wear_gain'] < 0.1, rows=range(50))
-    assert found['runs'] == 350
+    assert found['failed']['of'] == 350
     assert found['keys'][0]['key'] == 'wear_gain'
 
 
@@ -114,8 +118,7 @@ def of_names(failed_of):
 def worst_names(failed_of):
     (effect,) = effects_of({'scenario': of_names(failed_of)[0]}, of_names(failed_of)[1])
     worst = effect.worst_part
-    assert isinstance(worst, NamesPart)
-    return worst.names, worst.failed, worst.runs
+    return worst.names, worst.failed.count, worst.failed.of
 
 
 @pytest.mark.parametrize('order', [NAMES, NAMES[::-1], sorted(NAMES), NAMES[3:] + NAMES[:3]])
@@ -133,7 +136,7 @@ def test_names_that_nearly_always_fail_are_one_group():
 def test_booleans_are_names():
     values = np.arange(RUNS) % 2 == 0
     (effect,) = effects_of({'cut': values}, values)
-    assert effect.worst_part == NamesPart(200, 200, ('True',))
+    assert effect.worst_part == Part(Share(200, 200), names=('True',))
 
 
 @pytest.mark.parametrize('seed', range(20))
@@ -148,7 +151,6 @@ def test_no_group_of_names_differs_more_from_the_others_than_the_worst(seed):
 
     groups = [each for size in range(1, len(NAMES)) for each in combinations(NAMES, size)]
     worst = worst_of(parts_of(values, failed, 10))
-    assert isinstance(worst, NamesPart)
     assert between(worst.names) == pytest.approx(max(map(between, groups)))
     assert failed[np.isin(values, worst.names)].mean() >= failed.mean()
 
@@ -161,7 +163,7 @@ def test_a_run_for_each_name_says_nothing_of_names():
 
 def test_a_grid_has_no_attribution():
     results = made_results([ENGAGED, 'stalled'], {'wear_gain': [1.0, 0.8]})
-    assert to_json(summary_of(results))['groups'][0]['attribution'] is None
+    assert to_json(summary_of(results))['groups'][0]['causes'] is None
 
 
 def test_a_p_value_below_its_last_digit_is_a_bound() -> None:

@@ -1,15 +1,15 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""FailureBoundary of failure on a grid: along one line, from its start to both sides."""
+"""Boundary of failure on a grid: along one line, from its start to both sides."""
 
 import numpy as np
 import pytest
 from made_results import made_results
 
-from ddct_bringup.campaign_report.statistics.boundaries import FailureBoundary, boundaries
-from ddct_bringup.campaign_report.summary import summary_of
-from ddct_bringup.campaign_report.summary_types import BoundarySide
 from ddct_bringup.campaign_report.texts import boundary_text, good_text
+from ddct_bringup.evaluation.boundaries import BoundarySide, boundary_sides
+from ddct_bringup.evaluation.share import Share
+from ddct_bringup.evaluation.summarise import summary_of
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_plant.files.json_records import to_json
 
@@ -17,7 +17,16 @@ WEAR = [0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3]
 
 
 def found(outcomes, start=1.0, values=WEAR):
-    return boundaries(np.array(values), np.array(outcomes, dtype=object), start)
+    outcomes = np.array(outcomes, dtype=object)
+    index = np.arange(len(outcomes))
+    sides = boundary_sides(np.array(values), outcomes, start, index, outcomes)
+    return dict(zip(('below', 'above'), sides, strict=True))
+
+
+def side_of(last_good, first_failure, row=None, failed=None, invalid=0):
+    """Return a side whose first failed run, if any, is in a row."""
+    state = None if row is None else 'failed'
+    return BoundarySide(last_good, first_failure, failed, invalid, row, state)
 
 
 def by_mark(marks):
@@ -25,49 +34,45 @@ def by_mark(marks):
     return [{'e': ENGAGED, 'f': 'failed', 'i': INVALID}[mark] for mark in marks]
 
 
-def test_the_first_failure_is_the_one_next_to_the_last_good_value_and_not_the_last():
+def test_the_first_failure_is_the_one_next_to_the_last_good_and_not_the_last():
     sides = found(by_mark('efeeeeff'))
-    assert sides['below'] == FailureBoundary(
-        last_good_value=0.8, first_failure=0.7, row=1, failed=1, runs=1
-    )
-    assert sides['above'] == FailureBoundary(
-        last_good_value=1.1, first_failure=1.2, row=6, failed=1, runs=1
-    )
+    assert sides['below'] == side_of(0.8, 0.7, 1, Share(1, 1))
+    assert sides['above'] == side_of(1.1, 1.2, 6, Share(1, 1))
 
 
 def test_without_a_failure_all_is_good_to_the_ends_of_the_range():
     sides = found(by_mark('eeeeeeee'))
-    assert (sides['below'].last_good_value, sides['below'].first_failure) == (0.6, None)
-    assert (sides['above'].last_good_value, sides['above'].first_failure) == (1.3, None)
+    assert (sides['below'].last_good, sides['below'].first_failure) == (0.6, None)
+    assert (sides['above'].last_good, sides['above'].first_failure) == (1.3, None)
 
 
 def test_a_start_that_fails_is_the_first_failure_of_both_sides_and_no_value_is_good():
     sides = found(by_mark('eeeefeee'))
-    assert sides['below'] == sides['above'] == FailureBoundary(None, 1.0, 4, 1, 1)
+    assert sides['below'] == sides['above'] == side_of(None, 1.0, 4, Share(1, 1))
 
 
 def test_a_run_that_does_not_count_is_no_failure_and_no_good_value():
     above = found(by_mark('eeeeeief'))['above']
-    assert above == FailureBoundary(1.0, 1.3, 7, 1, 1, invalid=1)
-    assert found(by_mark('eeeeeiee'))['above'] == FailureBoundary(1.0, None, None, invalid=1)
+    assert above == side_of(1.0, 1.3, 7, Share(1, 1), invalid=1)
+    assert found(by_mark('eeeeeiee'))['above'] == side_of(1.0, None, invalid=1)
 
 
 def test_a_value_with_several_runs_fails_with_one_of_them():
     sides = found(by_mark('eeeif'), 1.0, [1.0, 1.0, 1.0, 1.1, 1.1])
-    assert sides['above'] == FailureBoundary(1.0, 1.1, 4, 1, 2, invalid=1)
+    assert sides['above'] == side_of(1.0, 1.1, 4, Share(1, 2), invalid=1)
 
 
 def test_one_run_is_enough():
-    assert found([ENGAGED], values=[1.0])['below'] == FailureBoundary(1.0, None, None)
+    assert found([ENGAGED], values=[1.0])['below'] == side_of(1.0, None)
 
 
 @pytest.mark.parametrize('seed', range(20))
-def test_the_last_good_value_and_the_first_failure_are_never_the_same(seed):
+def test_the_last_good_and_the_first_failure_are_never_the_same(seed):
     random = np.random.default_rng(seed)
     marks = random.choice(list('eeefi'), size=24)
     values = np.repeat(WEAR, 3)
     for side in found(by_mark(marks), 1.0, values).values():
-        assert side.last_good_value is None or side.last_good_value != side.first_failure
+        assert side.last_good is None or side.last_good != side.first_failure
 
 
 @pytest.mark.parametrize(('good', 'bad'), [(1500.1, 1500.2), (0.1234561, 0.1234562), (0.9, 0.8)])
@@ -75,8 +80,7 @@ def test_their_texts_have_enough_digits_to_differ(good, bad):
     side = BoundarySide(
         last_good=good,
         first_failure=bad,
-        runs=1,
-        failed=1,
+        failed=Share(1, 1),
         invalid=0,
         index=3,
         state='stalled',
@@ -102,8 +106,7 @@ def test_on_a_grid_the_others_are_at_the_value_nearest_to_nominal():
     assert wear['below'] == {
         'last_good': 1.0,
         'first_failure': 0.9,
-        'failed': 1,
-        'runs': 1,
+        'failed': {'count': 1, 'of': 1, 'low': None, 'high': None},
         'invalid': 0,
         'index': 4,
         'state': 'withheld',
@@ -141,4 +144,4 @@ def test_a_seed_is_no_number_that_failure_begins_at():
     )
     (wear,) = found['groups'][0]['boundaries']
     assert wear['key'] == 'wear_gain'
-    assert (wear['below']['failed'], wear['below']['runs']) == (1, 2)
+    assert (wear['below']['failed']['count'], wear['below']['failed']['of']) == (1, 2)

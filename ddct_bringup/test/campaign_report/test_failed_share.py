@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from made_results import made_results
 
-from ddct_bringup.campaign_report.statistics.outcome import Share, count_outcomes, outcomes_of
-from ddct_bringup.campaign_report.summary import summary_of
+from ddct_bringup.evaluation.share import Share, outcomes_of
+from ddct_bringup.evaluation.summarise import summary_of
 from ddct_bringup.verdict.state import ENGAGED, INVALID, STATES
 from ddct_plant.files.json_records import to_json
 
@@ -24,19 +24,19 @@ def test_failures_of_one_state_have_a_share_and_an_interval_of_their_own():
 
     states = [ENGAGED, 'late', 'late', 'not_engaged']
     results = made_results(states, {'wear_gain': [0.7, 0.8, 0.9, 1.0]}, random=['wear_gain'])
-    failed = to_json(summary_of(results))['groups'][0]['failed']
-    assert (failed['engaged'], failed['failed'], failed['share']) == (1, 3, 0.75)
-    late = failed['states']['late']
-    assert (late['runs'], late['share']) == (2, 0.5)
+    (group,) = summary_of(results).groups
+    assert (group.engaged.count, group.failed.count, group.failed.of) == (1, 3, 4)
+    late = group.states['late']
+    assert (late.count, late.value) == (2, 0.5)
     exact = binomtest(2, 4).proportion_ci(method='exact')
-    assert late['interval'] == pytest.approx([exact.low, exact.high], rel=1e-9)
+    assert (late.low, late.high) == pytest.approx((exact.low, exact.high), rel=1e-9)
 
 
 def test_a_state_of_another_version_is_a_failure_and_is_named():
     results = made_results([ENGAGED, 'crumbled'], {'wear_gain': [0.7, 1.0]})
-    failed = to_json(summary_of(results))['groups'][0]['failed']
-    assert failed['failed'] == 1
-    assert failed['states']['crumbled']['runs'] == 1
+    (group,) = summary_of(results).groups
+    assert group.failed.count == 1
+    assert group.states['crumbled'].count == 1
 
 
 def test_a_run_that_does_not_count_is_invalid_whatever_state_it_has():
@@ -50,47 +50,56 @@ def test_the_interval_is_that_of_scipy(failed, runs):
     from scipy.stats import binomtest
 
     exact = binomtest(failed, runs).proportion_ci(confidence_level=0.95, method='exact')
-    found = Share(failed, 0, runs).interval()
-    assert found == pytest.approx((exact.low, exact.high), abs=4e-12)  # scipy searches: xtol 2e-12
+    found = Share.in_sample(failed, runs)
+    assert (found.low, found.high) == pytest.approx(
+        (exact.low, exact.high), abs=4e-12
+    )  # scipy searches: xtol 2e-12
 
 
 def test_none_of_n_failed_leaves_up_to_the_closed_form():
-    upper = Share(0, 0, 60).interval()[1]
-    assert upper == pytest.approx(1.0 - 0.025 ** (1 / 60), rel=1e-12)
+    assert Share.in_sample(0, 60).high == pytest.approx(1.0 - 0.025 ** (1 / 60), rel=1e-12)
 
 
 def test_invalid_runs_are_in_no_share_and_widen_the_interval_to_both_sides():
     from scipy.stats import binomtest
 
-    counts = count_outcomes(np.array([ENGAGED] * 6 + ['failed'] * 2 + [INVALID] * 2))
-    assert (counts.runs, counts.engaged, counts.failed, counts.invalid) == (10, 6, 2, 2)
-    assert counts.failed_share.share == 2 / 8
+    states = [ENGAGED] * 6 + ['late'] * 2 + [INVALID] * 2
+    results = made_results(states, {'wear_gain': [*range(10)]}, random=['wear_gain'])
+    (group,) = summary_of(results).groups
+    assert (group.runs, group.engaged.count, group.invalid) == (10, 6, 2)
+    assert (group.failed.count, group.failed.of, group.failed.value) == (2, 8, 2 / 8)
     lowest = binomtest(2, 10).proportion_ci(method='exact').low
     highest = binomtest(4, 10).proportion_ci(method='exact').high
-    assert counts.failed_share.interval() == pytest.approx((lowest, highest), rel=1e-12)
+    found = group.failed.low, group.failed.high
+    assert found == pytest.approx((lowest, highest), rel=1e-9)
 
 
 def test_of_invalid_runs_alone_there_is_no_share():
-    share = count_outcomes(np.array([INVALID] * 3)).failed_share
-    assert share.share is None
-    assert share.interval() == (0.0, 1.0)
+    assert Share.in_sample(0, 0, in_doubt=3) == Share(0, 0, 0.0, 1.0)
+    assert Share(0, 0).value is None
+    assert Share.in_sample(0, 0) == Share(0, 0)
+
+
+def test_a_share_and_its_interval_have_one_text_each_with_dashes_for_what_is_not_there():
+    found = Share(1, 8, 0.003, 0.527)
+    assert (found.text, found.interval_text) == ('12.5 %', '0.3 to 52.7 %')
+    assert (Share(0, 0).text, Share(1, 8).interval_text) == ('-', '-')
 
 
 def test_runs_on_a_grid_have_a_share_but_no_interval_with_a_reason():
-    found = to_json(summary_of(made_results([ENGAGED, 'withheld'], {'wear_gain': [1.0, 1.2]})))
-    failed = found['groups'][0]['failed']
-    assert (failed['share'], failed['interval']) == (0.5, None)
-    assert 'no random sample' in failed['no_interval']
+    (group,) = summary_of(made_results([ENGAGED, 'withheld'], {'wear_gain': [1.0, 1.2]})).groups
+    assert group.failed == Share(1, 2, None, None)
+    assert 'no random sample' in group.no_interval
 
 
 def test_random_runs_at_one_point_of_a_grid_have_an_interval_and_at_two_have_none():
     varied = {'gear': [1.0] * 4, 'wear_gain': [0.7, 0.8, 0.9, 1.0]}
     states = ['stalled', ENGAGED, ENGAGED, ENGAGED]
-    one = to_json(summary_of(made_results(states, varied, random=['wear_gain'])))
-    assert one['groups'][0]['failed']['interval'] is not None
+    one = summary_of(made_results(states, varied, random=['wear_gain']))
+    assert one.groups[0].failed.low is not None
     varied['gear'] = [1.0, 1.0, 2.0, 2.0]
-    two = to_json(summary_of(made_results(states, varied, random=['wear_gain'])))
-    assert two['groups'][0]['failed']['interval'] is None
+    two = summary_of(made_results(states, varied, random=['wear_gain']))
+    assert two.groups[0].failed.low is None
 
 
 def test_a_varied_text_key_makes_separate_groups():
@@ -106,15 +115,14 @@ def test_a_varied_text_key_makes_separate_groups():
         ('ls8', 'linear'),
         ('ls8', 'stick_slip'),
     ]
-    assert [each['failed']['share'] for each in groups] == [0.0, 1.0, 1.0, 0.0]
-    stalled = {'runs': 1, 'share': 1.0, 'interval': None}
-    assert groups[1]['failed']['states'] == {'stalled': stalled}
+    assert [each['failed']['count'] for each in groups] == [0, 1, 1, 0]
+    assert groups[1]['states'] == {'stalled': {'count': 1, 'of': 1, 'low': None, 'high': None}}
 
 
 def test_reasons_of_invalid_runs_are_listed_the_most_frequent_first():
     results = made_results([INVALID, ENGAGED, INVALID, INVALID], {'wear_gain': [1.0] * 4})
     results.columns['reason'][:] = ['once', '', 'twice', 'twice']
-    assert to_json(summary_of(results))['groups'][0]['failed']['reasons'] == [
+    assert to_json(summary_of(results))['groups'][0]['reasons'] == [
         {'reason': 'twice', 'runs': 2, 'index': 2},
         {'reason': 'once', 'runs': 1, 'index': 0},
     ]

@@ -9,7 +9,7 @@ import pytest
 from made_results import made_results
 
 from ddct_bringup.campaign_report.maps import MOST_POINTS, campaign_maps
-from ddct_bringup.campaign_report.results import Results
+from ddct_bringup.evaluation.grouped_rows import GroupedRows
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_plant.files.json_records import to_json
 
@@ -17,7 +17,7 @@ WEAR, MASS, SLOPE = 'wear_gain', 'vehicle.mass_kg', 'load.slope_rad'
 JERK = 'peak_jerk_m_s3'
 
 
-def maps_of(results: Results) -> Any:
+def maps_of(results: GroupedRows) -> Any:
     found = campaign_maps(results)
     assert found is not None
     return to_json(found)
@@ -53,14 +53,12 @@ def test_the_scale_is_one_for_all_controllers_and_that_of_engaged_runs():
 def test_a_cell_of_several_samples_counts_them_and_shows_the_worst():
     results = made_results(
         [ENGAGED, 'stalled', ENGAGED, ENGAGED],
-        {WEAR: [0.8, 0.8, 1.0, 1.0], SLOPE: [0.0, 0.1, 0.0, 0.1]},
+        {WEAR: [0.8, 0.8, 1.0, 1.0], MASS: [800.0] * 2 + [1e3] * 2, SLOPE: [0.0, 0.1, 0.0, 0.1]},
         {JERK: [4.0, 3.0, 5.0, 6.0]},
         random=[SLOPE],
+        nominal={WEAR: 1.0, MASS: 1000.0, SLOPE: 0.0},
     )
-    results.columns[MASS] = results.columns[WEAR] * 1000.0
-    found = maps_of(
-        Results(results.columns, [WEAR, MASS], [SLOPE], {WEAR: 1.0, MASS: 1000.0, SLOPE: 0.0})
-    )
+    found = maps_of(results)
     assert found['quantities'][0] == {
         'key': 'failed_share',
         'title': 'share of failed engagements',
@@ -89,7 +87,7 @@ def test_the_other_numbers_of_the_grid_are_at_the_value_nearest_to_nominal():
     assert found['maps'][2]['extent'] == '4 of 8 runs'
 
 
-def sampled(runs: int) -> Results:
+def sampled(runs: int) -> GroupedRows:
     """Return runs over three keys that were drawn at random; the last tenth of them fails."""
     places = np.arange(runs)
     varied = {WEAR: 1.0 + 0.001 * places, MASS: places % 7.0, SLOPE: places % 5.0}
@@ -139,11 +137,11 @@ def test_samples_at_points_of_a_grid_are_drawn_where_the_grid_is_at_its_start() 
 
 
 def test_a_cell_with_a_late_lock_is_a_failed_cell() -> None:
-    varied = {WEAR: [0.8, 0.8, 1.0, 1.0], SLOPE: [0.0, 0.1, 0.0, 0.1]}
+    mass = [800.0] * 2 + [1000.0] * 2
+    varied = {WEAR: [0.8, 0.8, 1.0, 1.0], MASS: mass, SLOPE: [0.0, 0.1, 0.0, 0.1]}
     states = [ENGAGED, 'late', ENGAGED, ENGAGED]
     results = made_results(states, varied, {JERK: [1.0] * 4}, random=[SLOPE])
-    results.columns[MASS] = results.columns[WEAR] * 1000.0
-    (panel,) = maps_of(Results(results.columns, [WEAR, MASS], [SLOPE], {}))['maps'][0]['panels']
+    (panel,) = maps_of(results)['maps'][0]['panels']
     assert (panel['failed'], panel['state']) == ([1, 0], ['late', ENGAGED])
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from made_results import made_results
 
-from ddct_bringup.campaign_report.statistics.paired import difference_of, median_interval
-from ddct_bringup.campaign_report.summary import summary_of
+from ddct_bringup.evaluation.paired import difference_of, median_interval
+from ddct_bringup.evaluation.summarise import summary_of
 from ddct_bringup.verdict.state import ENGAGED
 from ddct_plant.files.json_records import to_json
 
@@ -26,7 +26,7 @@ def test_only_cases_in_which_both_engaged_are_compared_and_the_others_are_counte
     assert (pair['first'], pair['second'], pair['varied']) == ('pi', 'ls8', {})
     counts = [pair[name] for name in ('cases', 'both', 'first_only', 'second_only', 'neither')]
     assert counts == [4, 1, 1, 1, 1]
-    (found,) = pair['differences']
+    found = pair['differences'][JERK]
     assert (found['cases'], found['p50'], found['interval']) == (1, 1.0, None)
 
 
@@ -40,8 +40,8 @@ def test_cases_are_joined_by_their_number_whatever_varies_between_the_groups():
     )
     linear, sticking = to_json(summary_of(results))['pairs']
     assert linear['varied'] == {'clutch': 'linear'}
-    assert [linear['differences'][0][name] for name in ('p5', 'p50', 'p95')] == [-10.0] * 3
-    assert [sticking['differences'][0][name] for name in ('p5', 'p50', 'p95')] == [-0.5] * 3
+    assert [linear['differences'][JERK][name] for name in ('p5', 'p50', 'p95')] == [-10.0] * 3
+    assert [sticking['differences'][JERK][name] for name in ('p5', 'p50', 'p95')] == [-0.5] * 3
 
 
 def test_of_a_signed_quantity_magnitudes_are_compared():
@@ -82,7 +82,7 @@ def test_points_of_a_grid_have_no_interval():
         controllers=['pi'] * runs + ['ls8'] * runs,
     )
     (pair,) = to_json(summary_of(results))['pairs']
-    assert pair['differences'][0]['interval'] is None
+    assert pair['differences'][JERK]['interval'] is None
     assert 'no random sample' in pair['no_interval']
     sampled = made_results(
         [ENGAGED] * 2 * runs,
@@ -91,4 +91,5 @@ def test_points_of_a_grid_have_no_interval():
         controllers=['pi'] * runs + ['ls8'] * runs,
         random=['wear_gain'],
     )
-    assert to_json(summary_of(sampled))['pairs'][0]['differences'][0]['interval'] == [-10.0, -10.0]
+    (pair,) = to_json(summary_of(sampled))['pairs']
+    assert pair['differences'][JERK]['interval'] == [-10.0, -10.0]

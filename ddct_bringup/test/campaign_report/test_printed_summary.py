@@ -9,7 +9,7 @@ from in_this_process import in_this_process
 from made_results import made_results
 
 from ddct_bringup.campaign_report.printed_summary import summary_tables
-from ddct_bringup.campaign_report.summary import summary_of
+from ddct_bringup.evaluation.summarise import summary_of
 from ddct_bringup.programs.campaign import main
 
 SPEC = """\

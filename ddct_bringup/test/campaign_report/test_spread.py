@@ -6,14 +6,26 @@ import numpy as np
 import pytest
 from made_results import made_results
 
-from ddct_bringup.campaign_report.statistics.spread import (
+from ddct_bringup.evaluation.spread import (
     Quantiles,
     conditional_value_at_risk,
-    spread_of,
 )
-from ddct_bringup.campaign_report.summary import summary_of
+from ddct_bringup.evaluation.spread import (
+    spread_of as summarised_spread,
+)
+from ddct_bringup.evaluation.summarise import summary_of
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_plant.files.json_records import to_json
+
+
+def spread_of(values, outcomes):
+    """Return the statistics of runs whose index is their place."""
+    return summarised_spread('s', values, outcomes, np.arange(len(values)), outcomes)
+
+
+def worst_of(found):
+    """Return the indices of the worst engaged and the worst valid run."""
+    return [each and each.index for each in (found.worst_engaged, found.worst)]
 
 
 def engaged(count):
@@ -42,8 +54,8 @@ def test_a_run_that_is_not_engaged_has_no_place_among_the_quantiles(outcome):
     outcomes = np.array([ENGAGED] * 101 + [outcome] * 60, dtype=object)
     found = spread_of(values, outcomes)
     assert found.quantiles == Quantiles(6.0, 51.0, 96.0)
-    assert found.cvar == pytest.approx(conditional_value_at_risk(values[:101]))
-    assert (found.engaged, found.with_value, found.worst_engaged) == (101, 101, 100)
+    assert found.cvar_engaged == pytest.approx(conditional_value_at_risk(values[:101]))
+    assert (found.with_value, worst_of(found)[0]) == (101, 100)
 
 
 def test_half_of_the_runs_failed_and_the_median_is_still_that_of_the_engaged_ones():
@@ -51,36 +63,36 @@ def test_half_of_the_runs_failed_and_the_median_is_still_that_of_the_engaged_one
     results = made_results(
         states, {'wear_gain': list(range(8))}, {'peak_jerk_m_s3': [4.0, 6.0, 5.0, *[90.0] * 5]}
     )
-    (found,) = to_json(summary_of(results))['groups'][0]['quantities']
-    assert (found['p50'], found['engaged'], found['with_value']) == (5.0, 3, 3)
+    (group,) = summary_of(results).groups
+    (found,) = group.quantities.values()
+    assert (found.quantiles.p50, group.engaged.count, found.with_value) == (5.0, 3, 3)
 
 
 def test_fewer_than_twenty_engaged_runs_have_no_cvar():
     values = np.arange(25.0)
     outcomes = np.array([ENGAGED] * 19 + ['failed'] * 6, dtype=object)
-    assert spread_of(values, outcomes).cvar is None
+    assert spread_of(values, outcomes).cvar_engaged is None
     outcomes[19] = ENGAGED
-    assert spread_of(values, outcomes).cvar == 19.0
+    assert spread_of(values, outcomes).cvar_engaged == 19.0
 
 
 def test_a_value_that_is_not_defined_is_counted_and_left_out():
     found = spread_of(np.array([1.0, 2.0, np.nan]), engaged(3))
-    assert (found.engaged, found.with_value, found.quantiles.p50) == (3, 2, 1.5)
+    assert (found.with_value, found.quantiles.p50) == (2, 1.5)
 
 
 def test_without_an_engaged_run_there_are_no_quantiles():
     found = spread_of(np.array([1.0]), np.array(['failed'], dtype=object))
     assert found.quantiles == Quantiles(None, None, None)
-    assert (found.worst_engaged, found.worst) == (None, 0)
+    assert worst_of(found) == [None, 0]
 
 
 def test_quantiles_keep_their_signs_and_the_worst_case_is_the_largest_magnitude_with_its_sign():
     slips = [*np.linspace(-236.88, 60.0, 21).tolist(), -500.0, 900.0]
     states = [ENGAGED] * 21 + ['withheld', INVALID]
     wear = {'wear_gain': list(range(23))}
-    (found,) = to_json(summary_of(made_results(states, wear, {'slip_final_rpm': slips})))[
-        'groups'
-    ][0]['quantities']
+    results = made_results(states, wear, {'slip_final_rpm': slips})
+    found = to_json(summary_of(results))['groups'][0]['quantities']['slip_final_rpm']
     assert found['p5'] < found['p50'] < 0.0 < found['p95']
     assert found['worst_engaged'] == {'value': -236.88, 'index': 0, 'state': ENGAGED}
     assert found['worst'] == {'value': -500.0, 'index': 21, 'state': 'withheld'}
@@ -89,7 +101,7 @@ def test_quantiles_keep_their_signs_and_the_worst_case_is_the_largest_magnitude_
 
 def test_where_no_run_has_a_value_there_is_no_worst_case():
     found = spread_of(np.array([np.nan, 4.0]), np.array([ENGAGED, INVALID], dtype=object))
-    assert (found.worst_engaged, found.worst, found.cvar, found.with_value) == (
+    assert (found.worst_engaged, found.worst, found.cvar_engaged, found.with_value) == (
         None,
         None,
         None,
@@ -98,4 +110,4 @@ def test_where_no_run_has_a_value_there_is_no_worst_case():
 
 
 def test_of_equals_the_first_is_the_worst_case():
-    assert spread_of(np.array([1.0, 5.0, 5.0]), engaged(3)).worst == 1
+    assert worst_of(spread_of(np.array([1.0, 5.0, 5.0]), engaged(3))) == [1, 1]

@@ -13,9 +13,9 @@ from statistics import NormalDist
 
 import numpy as np
 
-from ddct_bringup.benchmark.statistics.case_figures import CaseFigures
-from ddct_bringup.benchmark.statistics.dominance import dominators_of
-from ddct_bringup.benchmark.statistics.held_out_gaps import gaps_of
+from ddct_bringup.evaluation.case_figures import CaseFigures
+from ddct_bringup.evaluation.dominance import dominators_of
+from ddct_bringup.evaluation.held_out_gaps import gaps_of
 
 SCENARIOS, SAMPLES = 11, 30
 IN_SCENARIO = np.repeat(np.arange(SCENARIOS), SAMPLES)

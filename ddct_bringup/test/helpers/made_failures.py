@@ -4,7 +4,7 @@
 
 import numpy as np
 
-from ddct_bringup.campaign_report.statistics.attribution import effects_of
+from ddct_bringup.evaluation.attribution import effects_of
 
 KEYS = ('wear_gain', 'vehicle.mass_kg', 'actuator.delay_s', 'load.slope_rad', 'gear', 'noise')
 NAMES = ('thesis', 'launch', 'launch_hot', 'launch_hill', 'tip_in', 'upshift', 'upshift_hot')

@@ -5,9 +5,9 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import numpy as np
+import pyarrow as pa
 
-from ddct_bringup.campaign_report.results import Results
+from ddct_bringup.evaluation.grouped_rows import By, GroupedRows
 
 
 def made_results(
@@ -18,24 +18,20 @@ def made_results(
     controllers: Sequence[str] | None = None,
     random: Sequence[str] = (),
     nominal: Mapping[str, float] | None = None,
-) -> Results:
-    """Return results with a run per state; what is varied and not random is of the grid."""
+) -> GroupedRows:
+    """Return rows with a run per state; what is varied and not random is of the grid."""
     runs = len(states)
     varied = dict(varied or {})
-    columns = {
-        'index': np.arange(runs),
-        'controller': np.array(controllers or ['pi'] * runs, dtype=object),
-        'valid': np.array([state != 'invalid' for state in states]),
-        'reason': np.array(
-            ['it broke' if state == 'invalid' else '' for state in states], dtype=object
-        ),
-        'state': np.array(states, dtype=object),
-        **{key: _column(values) for key, values in varied.items()},
-        **{key: np.array(values, dtype=float) for key, values in (quantities or {}).items()},
-    }
-    grid = [key for key in varied if key not in random]
-    return Results(columns, grid, list(random), dict(nominal or {}))
-
-
-def _column(values: Sequence[Any]) -> np.ndarray:
-    return np.array(values, dtype=object if isinstance(values[0], str) else None)
+    table = pa.table(
+        {
+            'index': range(runs),
+            'controller': controllers or ['pi'] * runs,
+            'valid': [state != 'invalid' for state in states],
+            'reason': ['it broke' if state == 'invalid' else '' for state in states],
+            'state': states,
+            **varied,
+            **{key: [*map(float, values)] for key, values in (quantities or {}).items()},
+        }
+    )
+    grid = tuple(key for key in varied if key not in random)
+    return GroupedRows(table, By(grid, tuple(random), dict(nominal or {})))

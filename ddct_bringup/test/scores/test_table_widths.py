@@ -12,7 +12,7 @@ import pytest
 from made_results import made_results
 
 from ddct_bringup.campaign_report.printed_summary import summary_tables
-from ddct_bringup.campaign_report.summary import summary_of
+from ddct_bringup.evaluation.summarise import summary_of
 from ddct_bringup.identification import identify
 from ddct_bringup.programs import benchmark, limit, reproduce, sweep
 from ddct_controllers.check import program as check_controller

@@ -59,7 +59,7 @@ RESULT = TuningResult(
     best_file='best.yaml',
     front=FRONT,
     before=None,
-    gaps=[],
+    gaps=(),
     importances={},
 )
 

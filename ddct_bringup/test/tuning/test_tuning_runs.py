@@ -16,7 +16,7 @@ from samples import sampled
 from small_tuning import leave_out_pictures, tuning
 
 from ddct_bringup.api import run
-from ddct_bringup.benchmark.evaluated import MAIN
+from ddct_bringup.evaluation.quantities import MAIN
 from ddct_bringup.many_runs.local_workers import ThisProcess
 from ddct_bringup.programs.tune import main
 from ddct_bringup.tuning import conduct, study

@@ -4,7 +4,7 @@
 
 from made_failures import covered_effects, wrongly_blamed
 
-from ddct_bringup.campaign_report.statistics import attribution as attribution_module
+from ddct_bringup.evaluation import attribution as attribution_module
 
 
 def test_5_percent_of_campaigns_attribute_failures_that_no_key_causes_to_a_key(monkeypatch):

@@ -114,7 +114,7 @@ def test_campaigns_sweeps_report_and_pages_have_it(patched: Path) -> None:
         from ddct_bringup.api.shell.sweeps import metrics_called
         from ddct_bringup.campaign.columns import runs_table, schema_over
         from ddct_bringup.campaign.rows import SERIAL, ScoredRow, scored_headless
-        from ddct_bringup.campaign_report.evaluated_quantities import QUANTITIES
+        from ddct_bringup.evaluation.quantities import QUANTITIES
         from ddct_bringup.report.definitions import definitions
         from ddct_bringup.run.run_base import RunBase
         from ddct_bringup.verdict.limits import packaged_limits
@@ -126,7 +126,7 @@ def test_campaigns_sweeps_report_and_pages_have_it(patched: Path) -> None:
         run = ScoredRow(0, 'pi', 0, {{}}, scores, SERIAL)
         (row,) = runs_table(schema_over({{}}), [run]).to_pylist()
         assert row['{KEY}'] > 1.0
-        assert '{KEY}' in [each.key for each in QUANTITIES]
+        assert '{KEY}' in QUANTITIES
         assert [each.key for each in metrics_called('--metrics', '{KEY}')] == ['{KEY}']
         found = definitions((), thesis=False)
         assert 'peak w_d' in [each.term for group in found.values() for each in group]

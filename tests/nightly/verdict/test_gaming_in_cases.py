@@ -12,8 +12,8 @@ from dataclasses import replace
 import pytest
 from support.gaming_runs import GAMING_CONTROLLERS, HELD_OUT_SEED, gaming_file, runs_in_cases
 
-from ddct_bringup.benchmark.statistics.case_figures import CaseFigures
-from ddct_bringup.benchmark.statistics.dominance import PairedComparison, compare, dominators_of
+from ddct_bringup.evaluation.case_figures import CaseFigures
+from ddct_bringup.evaluation.dominance import PairedComparison, compare, dominators_of
 
 SAMPLES = 4
 HONEST = (
@@ -62,9 +62,7 @@ def dominates(comparison: PairedComparison) -> bool:
 
 def in_response_and_peak_jerk(comparison: PairedComparison) -> PairedComparison:
     names = ('response_s', 'peak_jerk_m_s3')
-    return replace(
-        comparison, figures=tuple(each for each in comparison.figures if each.name in names)
-    )
+    return replace(comparison, figures={name: comparison.figures[name] for name in names})
 
 
 def test_no_honest_controller_dominates_another(honest: Mapping[str, CaseFigures]) -> None:

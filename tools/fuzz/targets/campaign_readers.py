@@ -13,9 +13,9 @@ from ddct_bringup.campaign.conduct import RESULTS, carry_out
 from ddct_bringup.campaign.plan import CampaignPlan, RecordedCampaign
 from ddct_bringup.campaign.spec import read_spec, spec_of
 from ddct_bringup.campaign_report.folder import SUMMARY
-from ddct_bringup.campaign_report.reading import read_table, results_of
-from ddct_bringup.campaign_report.results import Results
-from ddct_bringup.campaign_report.summary import summary_of
+from ddct_bringup.campaign_report.reading import grouped_rows, read_table
+from ddct_bringup.evaluation.summarise import summary_of
+from ddct_bringup.evaluation.summary import Summary, SummaryFile
 from ddct_bringup.manifest.manifest import (
     ITSELF,
     MANIFEST,
@@ -40,7 +40,7 @@ def campaign_readers(folder: Path) -> list[Reader]:
     carry_out(Campaign(spec_of(_SPEC, folder)), packaged_limits(), made, workers=1)
     results = (made / RESULTS).read_bytes()
     plan = json.dumps(read_manifest(made).campaigns[ITSELF]).encode()
-    summary = plain_json(summary_of(_results(made)))
+    summary = plain_json(SummaryFile.of(_summary(made)))
     return [
         Reader('campaign', 'mine.yaml', read_spec, (_TEMPLATE.read_bytes(),)),
         Reader('campaign_plan', 'plan.json', partial(read_json, CampaignPlan), (plan,)),
@@ -52,9 +52,9 @@ def campaign_readers(folder: Path) -> list[Reader]:
     ]
 
 
-def _results(folder: Path) -> Results:
+def _summary(folder: Path) -> Summary:
     recorded = RecordedCampaign.read(folder)
-    return results_of(recorded, read_table(folder, recorded))
+    return summary_of(grouped_rows(recorded, read_table(folder, recorded)))
 
 
 def _summary_beside(made: Path) -> Read:
@@ -65,7 +65,7 @@ def _summary_beside(made: Path) -> Read:
         for name in (MARKER, MANIFEST):
             shutil.copy(made / name, file.parent)
         manifest.with_files({RESULTS: file_digest(file)}).write(file.parent)
-        return summary_of(_results(file.parent))
+        return _summary(file.parent)
 
     return read
 

@@ -24,9 +24,13 @@ from ddct_bringup.campaign.columns import (
 from ddct_bringup.campaign.conduct import RESULTS, carry_out
 from ddct_bringup.campaign.plan import RecordedCampaign
 from ddct_bringup.campaign.rows import SERIAL, ScoredRow
-from ddct_bringup.campaign_report.folder import PAGE, scenario_of, write_campaign_page
-from ddct_bringup.campaign_report.reading import read_table, require_as_written, results_of
-from ddct_bringup.campaign_report.summary_types import Summary
+from ddct_bringup.campaign_report.folder import (
+    PAGE,
+    scenario_of,
+    write_campaign_page,
+)
+from ddct_bringup.campaign_report.reading import grouped_rows, read_table, require_as_written
+from ddct_bringup.evaluation.summary import Summary, SummaryFile
 from ddct_bringup.manifest.code import code_digest
 from ddct_bringup.manifest.manifest import keep_digests
 from ddct_bringup.run.plan import RunPlan
@@ -133,12 +137,12 @@ def show_campaign(
     """Write the page of a campaign anew, and what else is wanted to files; return the summary."""
     summary = write_campaign_page(folder)
     if json:
-        write_json(json, summary)
+        write_json(json, SummaryFile.of(summary))
     if csv:
         write_text(csv, table_csv(read_table(folder, RecordedCampaign.read(folder))))
     if figure:
         recorded = RecordedCampaign.read(folder)
-        results = results_of(recorded, read_table(folder, recorded))
+        results = grouped_rows(recorded, read_table(folder, recorded))
         shell.write_chart(shell.distributions_chart(results, scenario_of(recorded)), Path(figure))
     keep_digests(file for file in (json, csv, figure) if file not in (None, STDOUT))
     return summary

@@ -4,15 +4,12 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 
 from ddct_bringup.benchmark.case_rows import CaseRows
-from ddct_bringup.benchmark.cases import packaged_folder
-from ddct_bringup.benchmark.comparison import figures_in
-from ddct_bringup.benchmark.evaluated import MAIN, Columns, values_of
-from ddct_bringup.benchmark.evaluation import states_in
-from ddct_bringup.benchmark.outcomes import share_of_successes, spread_in
+from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.release import release_rows
 from ddct_bringup.benchmark.report import texts
 from ddct_bringup.benchmark.report.printed import spread_texts
@@ -22,12 +19,13 @@ from ddct_bringup.benchmark.report.rules import (
     left_open,
     states_that_count,
 )
-from ddct_bringup.benchmark.statistics.case_figures import FIGURES
-from ddct_bringup.benchmark.statistics.dominance import compare, dominators_of
 from ddct_bringup.campaign.keys import SCENARIO
-from ddct_bringup.campaign_report.texts import interval_text, state_text
+from ddct_bringup.evaluation.dominance import compare
+from ddct_bringup.evaluation.grouped_rows import GroupedRows
+from ddct_bringup.evaluation.quantities import MAIN
+from ddct_bringup.evaluation.summarise import summarise
+from ddct_bringup.evaluation.summary import GroupSummary, Summary
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_bringup.verdict.state import ENGAGED
 from ddct_plant.program.table import Table, Weight, with_reasons
 
 _STATES = 'controller', 'engaged', 'other states'
@@ -47,17 +45,20 @@ def packaged_tables() -> Mapping[str, Table]:
     SCENARIO_figures the figures of the successes.
     """
     rows = release_rows(packaged_folder()).rows
+    varied = tuple(Cases.packaged().whole.vary)
+    every = summarise(rows.table, rows.by(varied, dominance=True))
     tables = {
-        'all': Table('All development cases', _headers_of_all(), list(_overall(rows))),
-        'dominance': _dominance(rows),
+        'all': Table('All development cases', _headers_of_all(), list(_overall(every))),
+        'dominance': _dominance(every),
     }
-    names = rows.of(rows.controllers[0])[SCENARIO]
+    names = np.array(rows.rows[SCENARIO].to_pylist()[: rows.cases])
     for name in dict.fromkeys(names.tolist()):
-        part = rows.of_cases(np.flatnonzero(names == name))
+        of_scenario = rows.of_cases(np.flatnonzero(names == name))
+        part = summarise(of_scenario.table, of_scenario.by(varied))
         tables[name] = Table(
             f'Development cases of {name}',
             _STATES,
-            [(each, *_state_cells(part.of(each))) for each in part.controllers],
+            [(each.controller, *_state_cells(each)) for each in part.groups],
         )
         tables[f'{name}_figures'] = Table(
             f'Successes in development cases of {name}',
@@ -98,42 +99,33 @@ def _headers_of_all() -> tuple[str, ...]:
     return (*_STATES[:2], '95 % interval', *_STATES[2:])
 
 
-def _overall(rows: CaseRows) -> Iterator[tuple[str, ...]]:
-    for name in rows.controllers:
-        columns = rows.of(name)
-        engaged, others = _state_cells(columns)
-        interval = interval_text(share_of_successes(columns).interval)
-        yield name, engaged, interval, others
+def _overall(summary: Summary) -> Iterator[tuple[str, ...]]:
+    for group in summary.groups:
+        engaged, others = _state_cells(group)
+        yield group.controller, engaged, group.engaged.interval_text, others
 
 
-def _state_cells(columns: Columns) -> tuple[str, str]:
+def _state_cells(group: GroupSummary) -> tuple[str, str]:
     """Return the engaged runs, and the other states with their numbers."""
-    states = {state: each.runs for state, each in states_in(columns).items()}
-    engaged, runs = states.pop(ENGAGED, 0), len(columns['valid'])
-    others = ', '.join(f'{count} {state_text(state)}' for state, count in states.items())
-    return f'{engaged} of {runs}', others or '-'
+    return f'{group.engaged.count} of {group.runs}', texts.states_text(group) or '-'
 
 
-def _figure_rows(rows: CaseRows) -> Iterator[tuple[str, ...]]:
+def _figure_rows(summary: Summary) -> Iterator[tuple[str, ...]]:
     """Yield P50, P95 and worst of each controller's figures, a row each."""
-    for name in rows.controllers:
-        columns = rows.of(name)
-        cells = []
-        for key, form, factor in _FORMS:
-            values = values_of(columns, key)
-            assert values is not None
-            cells.append(spread_texts(spread_in(columns, values), form, factor))
+    for group in summary.groups:
+        cells = [
+            spread_texts(group.quantities.get(key), form, factor) for key, form, factor in _FORMS
+        ]
         for of, row in zip(('P50', 'P95', 'worst'), zip(*cells, strict=True), strict=True):
-            yield name, of, *row
+            yield group.controller, of, *row
 
 
-def _dominance(rows: CaseRows) -> Table:
+def _dominance(summary: Summary) -> Table:
     """Return how many controllers each one dominates, and which dominate it."""
-    dominators = dominators_of(figures_in(rows))
+    dominators = {group.controller: group.dominated_by or () for group in summary.groups}
     found = []
-    for name in rows.controllers:
+    for name, ours in dominators.items():
         dominated = sum(name in others for others in dominators.values())
-        ours = dominators[name]
         found.append((name, str(dominated), str(len(ours)), ', '.join(ours[:3]) or '-'))
     headers = 'controller', 'dominates', 'dominated by', 'the first of these'
     return Table('Who dominates whom in all development cases', headers, found)
@@ -141,13 +133,10 @@ def _dominance(rows: CaseRows) -> Table:
 
 def _compared_cases(rows: CaseRows) -> str:
     """Return how many cases the dominance is of, and how many are left out of each figure."""
-    figures = list(figures_in(rows).values())
-    left_out = dict.fromkeys((each.name for each in FIGURES), 0)
-    for place, ours in enumerate(figures):
-        for theirs in figures[:place]:
-            for found in compare(ours, theirs).figures:
-                left_out[found.name] = max(left_out[found.name], found.null)
+    grouped = GroupedRows(rows.table, rows.by(()))
+    figures = [grouped.case_figures(group) for group in grouped.groups]
+    comparisons = (compare(*pair) for pair in combinations(figures, 2))
     return (
         f'dominance is of {rows.cases} cases, left out of a pair at most: '
-        f'{texts.left_out_text(left_out)}'
+        f'{texts.left_out_text(comparisons)}'
     )

@@ -6,15 +6,8 @@ import shlex
 
 from markupsafe import Markup
 
-from ddct_bringup.benchmark.evaluated import EVALUATED, MAIN
 from ddct_bringup.benchmark.report import rules, texts
-from ddct_bringup.benchmark.result_types import (
-    BoardRow,
-    Evaluation,
-    Result,
-    ScenarioResult,
-    ValueSpread,
-)
+from ddct_bringup.benchmark.result_types import Result
 from ddct_bringup.benchmark.update_times import UpdateTimesFile
 from ddct_bringup.campaign_report import texts as campaign_texts
 from ddct_bringup.documents.page_parts import (
@@ -25,6 +18,7 @@ from ddct_bringup.documents.page_parts import (
     page_template,
     value_text,
 )
+from ddct_bringup.evaluation.quantities import MAIN, QUANTITIES
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.program.command_line import package_version
 
@@ -51,14 +45,13 @@ def benchmark_page(result: Result, update_times: UpdateTimesFile) -> str:
         texts=texts,
         shell_line=_shell_line,
         campaign_texts=campaign_texts,
-        quantities=EVALUATED,
+        quantities=QUANTITIES,
         main=list(MAIN),
         further=_further(result),
         states=rules.states_that_count(packaged_limits().rules),
         figures=rules.figures_that_count(),
         no_gain=rules.NO_GAIN,
         left_open=rules.left_open_here(),
-        spread=_spread,
         number_text=number_text,
         value_text=value_text,
         version=package_version(),
@@ -73,15 +66,11 @@ def _shell_line(*words: object) -> str:
 def _further(result: Result) -> list[str]:
     """Return the quantities besides the figures that a run of a judged controller has."""
     there = {
-        quantity.name
-        for judged in result.controllers
-        for evaluation in (*(judged.development or ()), *(judged.held_out or ()))
-        for quantity in evaluation.quantities
-        if quantity.spread.with_value
+        key
+        for judged in result.judged
+        for summary in (result.development, judged.held_out)
+        if summary
+        for key, found in summary.group(judged.controller).quantities.items()
+        if found.with_value
     }
-    return [key for key in EVALUATED if key in there and key not in MAIN]
-
-
-def _spread(evaluation: Evaluation | ScenarioResult | BoardRow, name: str) -> ValueSpread | None:
-    """Return the distribution of one quantity, None where no run has it."""
-    return next((each.spread for each in evaluation.quantities if each.name == name), None)
+    return [key for key in QUANTITIES if key in there and key not in MAIN]

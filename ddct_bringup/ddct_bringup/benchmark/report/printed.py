@@ -2,20 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables of a benchmark for the terminal."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
-from ddct_bringup.benchmark.evaluated import EVALUATED, MAIN
 from ddct_bringup.benchmark.report import texts
 from ddct_bringup.benchmark.report.rules import left_open_here
-from ddct_bringup.benchmark.result_types import (
-    Evaluation,
-    JudgedResult,
-    Result,
-    RunShare,
-    ValueSpread,
-)
+from ddct_bringup.benchmark.result_types import JudgedResult, Result
 from ddct_bringup.benchmark.update_times import UpdateTimesFile
-from ddct_bringup.campaign_report.texts import interval_text, p_text, share_text
+from ddct_bringup.campaign_report.texts import p_text
+from ddct_bringup.evaluation.quantities import MAIN, QUANTITIES
+from ddct_bringup.evaluation.share import share_text
+from ddct_bringup.evaluation.spread import QuantitySummary
+from ddct_bringup.evaluation.summary import GroupSummary
 from ddct_plant.program.printed_table import print_note, print_tables
 from ddct_plant.program.table import UNDEFINED, Table, Weight, text_or_dash, with_reasons
 
@@ -25,11 +22,13 @@ _OF_SPREAD = 'P50', 'P95', 'worst'
 
 def print_result(result: Result, update_times: UpdateTimesFile) -> None:
     """Print the main tables of a benchmark; the page has all."""
-    for judged in result.controllers:
-        if judged.development and judged.held_out:
-            print_tables(_tables(judged, judged.development, judged.held_out))
-        for line in texts.dominance_lines(judged):
-            print_note(line)
+    for judged in result.judged:
+        if judged.held_out and result.development:
+            theirs = judged.held_out.groups
+            ours = [result.development.group(each.controller) for each in theirs]
+            print_tables(_tables(judged, ours, theirs))
+            for line in texts.dominance_lines(result.development, judged.controller):
+                print_note(line)
     for name, found in update_times.controllers.items():
         ratio = text_or_dash(found.update_time_over_pi, '.2f')
         print_note(f'update time of {name} over that of pi: {ratio}')
@@ -37,22 +36,25 @@ def print_result(result: Result, update_times: UpdateTimesFile) -> None:
 
 
 def _tables(
-    judged: JudgedResult, ours: list[Evaluation], theirs: list[Evaluation]
+    judged: JudgedResult, ours: Sequence[GroupSummary], theirs: Sequence[GroupSummary]
 ) -> Iterator[Table]:
     name = judged.controller
     rows = [
-        (first.controller, *_share_cells(first.success), *_share_cells(second.success))
+        (
+            first.controller,
+            *(cell for each in (first, second) for cell in _share_cells(each)),
+        )
         for first, second in zip(ours, theirs, strict=True)
     ]
     yield Table(f'{name}: engaged', ('controller', *_SHARES), rows)
-    for part, evaluations in (('development', ours), ('held out', theirs)):
+    for part, groups in (('development', ours), ('held out', theirs)):
         spreads = Table(
             f'{name}: successes, {part}',
             ('figure', 'controller', *_OF_SPREAD, 'worst case'),
             [
-                (EVALUATED[key].heading, each.controller, *_spread_cells(each, key))
+                (QUANTITIES[key].heading, each.controller, *spread_cells(each, key))
                 for key in MAIN
-                for each in evaluations
+                for each in groups
             ],
             numbers=(False, False, True, True, True, True),
             weights=(Weight.IDENTIFYING, Weight.IDENTIFYING),
@@ -74,22 +76,25 @@ def _tables(
     yield with_reasons(gaps, lambda header, row: 'too few runs have a value')
 
 
-def _share_cells(share: RunShare) -> tuple[str, str]:
-    return share_text(share.share), interval_text(share.interval)
+def _share_cells(group: GroupSummary) -> tuple[str, str]:
+    return group.engaged.text, group.engaged.interval_text
 
 
-def _spread_cells(evaluation: Evaluation, key: str) -> tuple[str, ...]:
+def spread_cells(group: GroupSummary, key: str) -> tuple[str, ...]:
     """Return P50, P95 and worst of a quantity, and the case of the worst."""
-    for found in evaluation.quantities:
-        if found.name == key:
-            cells = spread_texts(found.spread, EVALUATED[key].form)
-            return *cells, text_or_dash(found.spread.worst.case, 'd')
-    return (UNDEFINED,) * 4
+    found = group.quantities.get(key)
+    worst = found.worst_engaged if found else None
+    cells = spread_texts(found, QUANTITIES[key].form)
+    return *cells, str(worst.index) if worst else UNDEFINED
 
 
-def spread_texts(found: ValueSpread, form: str, factor: float = 1.0) -> tuple[str, str, str]:
-    """Return P50, P95 and worst, times a factor."""
-    values = found.quantiles.p50, found.quantiles.p95, found.worst.value
+def spread_texts(
+    found: QuantitySummary | None, form: str, factor: float = 1.0
+) -> tuple[str, str, str]:
+    """Return P50, P95 and worst of the successes, times a factor."""
+    if found is None or found.worst_engaged is None:
+        return UNDEFINED, UNDEFINED, UNDEFINED
+    values = found.quantiles.p50, found.quantiles.p95, found.worst_engaged.value
     p50, p95, worst = (
         UNDEFINED if value is None else f'{factor * value:{form}}' for value in values
     )

@@ -4,7 +4,7 @@
 
 from collections.abc import Mapping
 
-from ddct_bringup.benchmark.statistics.case_figures import FIGURES
+from ddct_bringup.evaluation.case_figures import FIGURES
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.rules import Rules
 from ddct_plant.program.table import PURE

@@ -2,21 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Definitions and texts of a benchmark for its page and the terminal."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
-from ddct_bringup.benchmark.evaluated import EVALUATED
-from ddct_bringup.benchmark.result_types import (
-    Evaluation,
-    JudgedResult,
-    PairedResult,
-    Result,
-)
-from ddct_bringup.benchmark.statistics.case_figures import FIGURES, LEVEL
-from ddct_bringup.benchmark.statistics.dominance import RELATIVE_DIFFERENCE
-from ddct_bringup.benchmark.statistics.held_out_gaps import METHOD as GAP_METHOD
-from ddct_bringup.campaign_report.statistics.outcome import CONFIDENCE, METHOD
+from ddct_bringup.benchmark.result_types import JudgedResult, Result
 from ddct_bringup.campaign_report.texts import RULES as CAMPAIGN_RULES
 from ddct_bringup.campaign_report.texts import state_text
+from ddct_bringup.evaluation.case_figures import FIGURES, LEVEL
+from ddct_bringup.evaluation.dominance import RELATIVE_DIFFERENCE, PairedComparison
+from ddct_bringup.evaluation.held_out_gaps import METHOD as GAP_METHOD
+from ddct_bringup.evaluation.quantities import QUANTITIES
+from ddct_bringup.evaluation.share import CONFIDENCE, METHOD
+from ddct_bringup.evaluation.summary import GroupSummary, Summary
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_plant.program.table import PURE
 
@@ -57,54 +53,50 @@ RULES = {
 """Definitions by term."""
 
 
-def states_text(evaluation: Evaluation) -> str:
-    """Return the numbers of runs in states other than engaged."""
-    return ', '.join(
-        f'{found.runs} {state_text(state)}'
-        for state, found in evaluation.states.items()
-        if state != ENGAGED
-    )
+def states_text(group: GroupSummary) -> str:
+    """Return the numbers of runs in states other than engaged, invalid ones last."""
+    counts = {state: found.count for state, found in group.states.items() if state != ENGAGED}
+    if group.invalid:
+        counts[INVALID] = group.invalid
+    return ', '.join(f'{count} {state_text(state)}' for state, count in counts.items())
 
 
 def figure_name(key: str) -> str:
     """Return the symbol of a figure in texts."""
-    return EVALUATED[key].symbol
+    return QUANTITIES[key].symbol
 
 
-def left_out_text(left_out: Mapping[str, int]) -> str:
-    """Return the numbers of cases that are left out by figure."""
+def left_out_text(comparisons: Iterable[PairedComparison]) -> str:
+    """Return by figure the largest number of cases that any of the comparisons leaves out."""
+    left_out: dict[str, int] = {}
+    for comparison in comparisons:
+        for key, figure in comparison.figures.items():
+            left_out[key] = max(left_out.get(key, 0), figure.left_out)
     return ', '.join(f'{figure_name(key)} {cases}' for key, cases in left_out.items())
 
 
-def dominance_lines(judged: JudgedResult) -> Iterator[str]:
-    """Yield sentences on which controllers dominate the judged one, and which it dominates."""
-    name, pairs = judged.controller, judged.dominance
-    if not pairs:
+def dominance_lines(development: Summary, name: str) -> Iterator[str]:
+    """Yield sentences on which controllers dominate a judged one, and which it dominates."""
+    compared = {
+        pair.second: pair.comparison for pair in development.pairs_of(name) if pair.comparison
+    }
+    if not compared:
         return
+    dominated_by = development.group(name).dominated_by or ()
+    dominated = [
+        other for other in compared if name in (development.group(other).dominated_by or ())
+    ]
     for chosen, one, none in (
-        (
-            [pair for pair in pairs if pair.dominated],
-            f'{name} is dominated by',
-            f'no controller dominates {name}',
-        ),
-        (
-            [pair for pair in pairs if pair.dominates],
-            f'{name} dominates',
-            f'{name} dominates no controller',
-        ),
+        (dominated_by, f'{name} is dominated by', f'no controller dominates {name}'),
+        (dominated, f'{name} dominates', f'{name} dominates no controller'),
     ):
-        found = f'{one} {", ".join(pair.other for pair in chosen)}' if chosen else none
-        yield f'{found}: {_cases_text(chosen or pairs)}'
+        found = f'{one} {", ".join(chosen)}' if chosen else none
+        yield f'{found}: {_cases_text([compared[other] for other in chosen or compared])}'
 
 
-def _cases_text(pairs: Sequence[PairedResult]) -> str:
-    left_out: dict[str, int] = {}
-    for pair in pairs:
-        for figure in pair.figures:
-            key = figure.name
-            left_out[key] = max(left_out.get(key, 0), figure.left_out)
-    most = ' at most' if len(pairs) > 1 else ''
-    return f'{pairs[0].cases} cases, left out{most}: {left_out_text(left_out)}'
+def _cases_text(comparisons: Sequence[PairedComparison]) -> str:
+    most = ' at most' if len(comparisons) > 1 else ''
+    return f'{comparisons[0].cases} cases, left out{most}: {left_out_text(comparisons)}'
 
 
 def notes_of(result: Result) -> Iterator[str]:
@@ -127,24 +119,22 @@ def warnings_of(result: Result) -> Iterator[str]:
     if result.cases.other_code:
         yield result.cases.other_code
     for judged in result.controllers:
-        yield from _warnings(judged)
+        yield from _warnings(judged, result.development)
 
 
-def _warnings(judged: JudgedResult) -> Iterator[str]:
+def _warnings(judged: JudgedResult, development: Summary | None) -> Iterator[str]:
     name = judged.controller
     if judged.error:
         yield f'{name}: not judged: {judged.error}'
-    for part, evaluations in (
-        ('development', judged.development),
-        ('held-out', judged.held_out),
+    if not (judged.held_out and development):
+        return
+    for part, group in (
+        ('development', development.group(name)),
+        ('held-out', judged.held_out.group(name)),
     ):
-        if evaluations and (invalid := evaluations[0].states.get(INVALID)):
-            reason = evaluations[0].reasons[0].reason
-            yield f'{name}: {invalid.runs} {part} runs are invalid, such as: {reason}'
-    worse = [gap.name for gap in judged.gaps or () if gap.differs]
+        if group.invalid:
+            reason = group.reasons[0].reason
+            yield f'{name}: {group.invalid} {part} runs are invalid, such as: {reason}'
+    worse = [figure_name(gap.name) for gap in judged.gaps or () if gap.differs]
     if worse:
-        yield f'{name}: worse on held-out cases, beyond chance: {_symbols(worse)}'
-
-
-def _symbols(keys: Iterable[str]) -> str:
-    return ', '.join(map(figure_name, keys))
+        yield f'{name}: worse on held-out cases, beyond chance: {", ".join(worse)}'

@@ -12,7 +12,7 @@ import pyarrow as pa
 from ddct_bringup.campaign.arrow_columns import numpy_column
 from ddct_bringup.campaign.rows import STATE
 from ddct_bringup.campaign.specification.parts import mapping_of
-from ddct_bringup.campaign_report.evaluated_quantities import QUANTITIES
+from ddct_bringup.evaluation.quantities import OF_RUNS
 from ddct_plant.base.errors import ParameterError, require_choice, require_number
 from ddct_plant.base.options import require_known
 from ddct_plant.program.table import PURE, Quantity
@@ -31,7 +31,7 @@ _OTHERS = (
         UPDATE_TIME, 'update time over pi', PURE, '.2f', 'median update time over that of pi'
     ),
 )
-KNOWN: Mapping[str, Quantity] = {each.key: each for each in (*QUANTITIES, *_OTHERS)}
+KNOWN: Mapping[str, Quantity] = {each.key: each for each in (*OF_RUNS.values(), *_OTHERS)}
 """Quantities that can be an objective or a constraint, by key."""
 MINIMISE: Final = 'minimise'
 MAXIMISE: Final = 'maximise'

@@ -11,40 +11,29 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ddct_bringup.evaluation.share import Share
+
 MOST_PARTS = 10
 """Largest number of parts of a number's range."""
 
 
 @dataclass(frozen=True)
-class _Part:
-    """Runs in one part of a key's values."""
+class Part:
+    """Runs in one part of a key's values: a range of numbers, or names."""
 
-    runs: int
-    failed: int
+    failed: Share
+    """Failed runs among those in the part."""
+    low: float | None = None
+    """Smallest value drawn in the part; None for names."""
+    high: float | None = None
+    """Largest value drawn in the part."""
+    names: tuple[str, ...] = ()
+    """Names, in the order of the first run of each; empty for a range."""
 
     @property
     def share(self) -> float:
         """Share of the failed runs, 0 to 1."""
-        return self.failed / self.runs
-
-
-@dataclass(frozen=True)
-class RangePart(_Part):
-    """Runs in one part of a number's range."""
-
-    low: float
-    """Smallest value drawn in the part; `high` is the largest."""
-    high: float
-
-
-@dataclass(frozen=True)
-class NamesPart(_Part):
-    """Runs with one of some names, which are in the order of the first run of each."""
-
-    names: tuple[str, ...]
-
-
-Part = RangePart | NamesPart
+        return self.failed.count / self.failed.of
 
 
 def parts_of(values: np.ndarray, failed: np.ndarray, runs_in_part: int) -> tuple[Part, ...]:
@@ -57,20 +46,19 @@ def parts_of(values: np.ndarray, failed: np.ndarray, runs_in_part: int) -> tuple
     if not np.issubdtype(values.dtype, np.number):
         names = values.astype(str)
         return tuple(
-            NamesPart(int(np.sum(names == name)), int(np.sum(failed[names == name])), (name,))
+            Part(_failed(failed[names == name]), names=(name,))
             for name in dict.fromkeys(names.tolist())
         )
     places = places_in_range(values, runs_in_part)
     chosen = [places == each for each in range(int(places.max()) + 1)]
     return tuple(
-        RangePart(
-            int(np.sum(rows)),
-            int(np.sum(failed[rows])),
-            float(values[rows].min()),
-            float(values[rows].max()),
-        )
+        Part(_failed(failed[rows]), float(values[rows].min()), float(values[rows].max()))
         for rows in chosen
     )
+
+
+def _failed(failed: np.ndarray) -> Share:
+    return Share(int(np.sum(failed)), len(failed))
 
 
 def places_in_range(values: np.ndarray, runs_in_part: int) -> np.ndarray:
@@ -95,18 +83,17 @@ def worst_of(parts: Sequence[Part]) -> Part:
     has the largest variance of failure between them. One of those has a group that no name
     outside fails more often than a name inside (Fisher 1958), so that few are compared.
     """
-    names = [part for part in parts if isinstance(part, NamesPart)]
+    names = [part for part in parts if part.names]
     if not names:
         return max(parts, key=lambda part: part.share)
     by_share = sorted(names, key=lambda part: -part.share)
-    runs = np.cumsum([part.runs for part in by_share])
-    failed = np.cumsum([part.failed for part in by_share])
+    runs = np.cumsum([part.failed.of for part in by_share])
+    failed = np.cumsum([part.failed.count for part in by_share])
     inside, mean = runs[:-1], failed[-1] / runs[-1]
     between = (failed[:-1] - mean * inside) ** 2 / (inside * (runs[-1] - inside))
     count = int(np.argmax(between)) + 1 if len(names) > 1 else 1
     chosen = by_share[:count]
-    return NamesPart(
-        int(runs[count - 1]),
-        int(failed[count - 1]),
-        tuple(name for part in names if part in chosen for name in part.names),
+    return Part(
+        Share(int(failed[count - 1]), int(runs[count - 1])),
+        names=tuple(name for part in names if part in chosen for name in part.names),
     )

@@ -1,51 +1,71 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Rows of a campaign: varied keys, groups of runs, and the nominal case."""
+"""Rows of runs in groups: what was varied, and the nominal case."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations
 
 import numpy as np
+import pyarrow as pa
 
-from ddct_bringup.campaign.columns import CONTROLLER, INDEX, SEED
-from ddct_bringup.campaign.rows import STATE
-from ddct_bringup.campaign_report.evaluated_quantities import QUANTITIES
-from ddct_bringup.campaign_report.statistics.outcome import outcomes_of
+from ddct_bringup.campaign.arrow_columns import numpy_columns
+from ddct_bringup.campaign.rows import CONTROLLER, INDEX, SEED, STATE
+from ddct_bringup.evaluation.case_figures import CaseFigures
+from ddct_bringup.evaluation.quantities import QUANTITIES, is_number, with_sums
+from ddct_bringup.evaluation.share import FAILED, outcomes_of
+from ddct_bringup.evaluation.summary import OtherVersion
+from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_plant.program.table import Quantity
 
 
 @dataclass(frozen=True)
-class OtherVersion:
-    """Differences of results from those of this version; all empty where there are none."""
+class By:
+    """
+    What was varied in runs, by which their rows are grouped, and what is summarised of them.
 
-    absent: tuple[str, ...] = ()
-    """Missing columns."""
-    unknown: tuple[str, ...] = ()
-    """Columns that do not exist in this version."""
-    no_nominal: str = ''
-    """Reason why the nominal values of the varied keys are not known."""
+    The runs of a group have one controller, and one value of each varied key that is no number.
+    """
 
-
-@dataclass(frozen=True)
-class Results:
-    """Columns of `results.parquet`, with the varied keys of the manifest."""
-
-    columns: Mapping[str, np.ndarray]
-    """Columns by name, (n,) each, n >= 1; NaN for an undefined number."""
-    grid: Sequence[str]
+    grid: tuple[str, ...] = ()
     """Names of the keys varied on a grid."""
-    random: Sequence[str]
+    random: tuple[str, ...] = ()
     """Names of the keys drawn at random."""
-    nominal: Mapping[str, float]
+    nominal: Mapping[str, float] = field(default_factory=dict)
     """Numbers of the scenario before they were varied, where it has them."""
-    other: OtherVersion = OtherVersion()
+    other_version: OtherVersion = OtherVersion()
+    parts: str | None = None
+    """Key whose names are parts of a group, and make no groups of their own."""
+    invalid_fails: bool = False
+    """Whether an invalid run is a failure; else it does not count."""
+    dominance: bool = False
+    """Whether controllers are compared by the five figures."""
+    focus: tuple[str, ...] | None = None
+    """
+    Controllers whose differences, causes of failure and figures in the parts are wanted.
+
+    None for all.
+    """
+
+
+@dataclass(frozen=True, eq=False)
+class GroupedRows:
+    """Rows of runs with what was varied; all controllers have the same cases."""
+
+    table: pa.Table
+    """Row for each run, at least one, with the columns of a campaign."""
+    by: By
+
+    @cached_property
+    def columns(self) -> Mapping[str, np.ndarray]:
+        """Columns by name, (n,) each; NaN for an undefined number."""
+        return with_sums(numpy_columns(self.table))
 
     @property
     def rows(self) -> int:
         """Number of runs."""
-        return len(self.columns[CONTROLLER])
+        return len(self.table)
 
     @cached_property
     def outcomes(self) -> np.ndarray:
@@ -53,20 +73,23 @@ class Results:
         return outcomes_of(self.columns['valid'], self.columns[STATE])
 
     @cached_property
+    def failed(self) -> np.ndarray:
+        """Whether each run is a failure, (n,)."""
+        failed = self.outcomes == FAILED
+        return failed | (self.outcomes == INVALID) if self.by.invalid_fails else failed
+
+    @cached_property
     def quantities(self) -> list[Quantity]:
         """Evaluated quantities for which at least one run has a value."""
         return [
             each
-            for each in QUANTITIES
-            if is_number(self.columns.get(each.key)) and self._defined(each.key)
+            for each in QUANTITIES.values()
+            if is_number(self.columns.get(each.key)) and not np.isnan(self.columns[each.key]).all()
         ]
-
-    def _defined(self, key: str) -> bool:
-        return not np.isnan(self.columns[key]).all()
 
     @cached_property
     def cases(self) -> np.ndarray:
-        """Case of each run, (n,); all controllers have the same cases."""
+        """Case of each run, (n,)."""
         per_controller = self.rows // len(set(self.columns[CONTROLLER].tolist()))
         return self.columns[INDEX] % per_controller
 
@@ -79,7 +102,7 @@ class Results:
         """
         return [
             key
-            for key in dict.fromkeys([*self.grid, *self.random])
+            for key in dict.fromkeys([*self.by.grid, *self.by.random])
             if key != SEED
             and is_number(self.columns[key])
             and len(np.unique(self.columns[key])) > 1
@@ -88,14 +111,16 @@ class Results:
     @property
     def lines(self) -> list[str]:
         """Numbers along which failure has a boundary: those of a grid without random keys."""
-        random = [key for key in self.random if len(set(self.columns[key].tolist())) > 1]
-        return [] if random else [key for key in self.numbers if key in self.grid]
+        random = [key for key in self.by.random if len(set(self.columns[key].tolist())) > 1]
+        return [] if random else [key for key in self.numbers if key in self.by.grid]
 
     @cached_property
     def groups(self) -> list['Group']:
         """Runs grouped by controller, and by all other varied keys that are not numbers."""
-        varied = (*self.grid, *self.random)
-        named = [key for key in varied if not is_number(self.columns[key])]
+        varied = (*self.by.grid, *self.by.random)
+        named = [
+            key for key in varied if key != self.by.parts and not is_number(self.columns[key])
+        ]
         keys = [CONTROLLER, *(key for key in named if len(set(self.columns[key].tolist())) > 1)]
         return [
             Group({key: str(self.columns[key][rows[0]]) for key in keys}, rows)
@@ -104,10 +129,21 @@ class Results:
 
     @cached_property
     def pairs(self) -> list[tuple['Group', 'Group']]:
-        """All pairs of controllers, with the cases of both in one order."""
+        """Pairs of controllers, with the cases of both in one order."""
+        groups, focus = self.groups, self.by.focus
+        pairs = (
+            combinations(groups, 2)
+            if focus is None
+            else (
+                (first, second)
+                for first in groups
+                for second in groups
+                if first.controller in focus and second is not first
+            )
+        )
         return [
             (Group(first.names, first.rows[ours]), Group(second.names, second.rows[theirs]))
-            for first, second in combinations(self.groups, 2)
+            for first, second in pairs
             if first.varied == second.varied
             for _, ours, theirs in [
                 np.intersect1d(
@@ -127,9 +163,15 @@ class Results:
 
     def is_sample(self, group: 'Group') -> bool:
         """Return whether the runs of a group differ only by random keys."""
-        on_grid = [key for key in self.numbers if key in self.grid]
+        on_grid = [key for key in self.numbers if key in self.by.grid]
         constant = all(len(np.unique(self.columns[key][group.rows])) == 1 for key in on_grid)
-        return bool(self.random) and constant
+        return bool(self.by.random) and constant
+
+    def case_figures(self, group: 'Group') -> CaseFigures:
+        """Return the successes and the five figures of the runs of a group."""
+        rows = group.rows
+        columns = {name: column[rows] for name, column in self.columns.items()}
+        return CaseFigures.of(self.outcomes[rows] == ENGAGED, columns)
 
     def start_of(self, key: str) -> float:
         """
@@ -140,8 +182,9 @@ class Results:
         are not known, it is the middle of the grid.
         """
         values = np.unique(self.columns[key])
-        unnamed = float(values[(len(values) - 1) // 2]) if self.other.no_nominal else 0.0
-        nominal = self.nominal.get(key, unnamed)
+        unknown = self.by.other_version.no_nominal
+        unnamed = float(values[(len(values) - 1) // 2]) if unknown else 0.0
+        nominal = self.by.nominal.get(key, unnamed)
         return float(values[np.argmin(np.abs(values - nominal))])
 
     def others_nominal(self, rows: np.ndarray, keys: Sequence[str]) -> np.ndarray:
@@ -153,7 +196,7 @@ class Results:
 
     def others(self, keys: Sequence[str]) -> list[str]:
         """Return the grid's numbers besides `keys`."""
-        return [key for key in self.numbers if key in self.grid and key not in keys]
+        return [key for key in self.numbers if key in self.by.grid and key not in keys]
 
 
 @dataclass(frozen=True)
@@ -166,6 +209,11 @@ class Group:
     """Positions in the columns, (m,)."""
 
     @property
+    def controller(self) -> str:
+        """Name of the controller."""
+        return self.names[CONTROLLER]
+
+    @property
     def varied(self) -> dict[str, str]:
         """Names of the group besides the controller."""
         return {key: name for key, name in self.names.items() if key != CONTROLLER}
@@ -174,8 +222,3 @@ class Group:
     def label(self) -> str:
         """Label of the group in tables."""
         return ', '.join(self.names.values())
-
-
-def is_number(column: np.ndarray | None) -> bool:
-    """Return whether there is a column of numbers; booleans are none."""
-    return column is not None and bool(np.issubdtype(column.dtype, np.number))

@@ -23,7 +23,7 @@ from functools import cache
 
 import numpy as np
 
-from ddct_bringup.benchmark.statistics.case_figures import FIGURES, LEVEL, CaseFigures
+from ddct_bringup.evaluation.case_figures import FIGURES, LEVEL, CaseFigures
 
 RELATIVE_DIFFERENCE = 0.05
 """Part of the larger value by which two values have to differ."""
@@ -33,19 +33,20 @@ RELATIVE_DIFFERENCE = 0.05
 class FigureComparison:
     """One figure of two controllers, case by case."""
 
-    name: str
     better: int
     """Number of cases in which the first one is better."""
     worse: int
     """Number of cases in which it is worse."""
-    null: int
+    left_out: int
     """Number of cases left out, since the figure is null by the case."""
-    median_difference: float
+    median_difference: float | None
     """
     Median of the first value less the second, over the cases not left out, in the figure's unit.
 
-    It is infinite where failures of one controller alone decide it, and 0 without a case.
+    It is None where failures of one controller alone decide it, and 0 without a case.
     """
+    worse_in_median: bool
+    """Whether the median difference is above zero, failures included."""
 
     @property
     def p_better(self) -> float:
@@ -63,7 +64,8 @@ class PairedComparison:
     """All figures of two controllers on the same cases."""
 
     cases: int
-    figures: tuple[FigureComparison, ...]
+    figures: dict[str, FigureComparison]
+    """Five figures by key."""
 
     def dominates(self, *, among: int) -> bool:
         """
@@ -73,8 +75,9 @@ class PairedComparison:
         at 5 % of its own nor in its median difference.
         """
         level = level_among(among)
-        return any(each.p_better <= level for each in self.figures) and not any(
-            each.p_worse <= LEVEL or each.median_difference > 0.0 for each in self.figures
+        figures = self.figures.values()
+        return any(each.p_better <= level for each in figures) and not any(
+            each.p_worse <= LEVEL or each.worse_in_median for each in figures
         )
 
 
@@ -107,22 +110,20 @@ def compare(first: CaseFigures, second: CaseFigures) -> PairedComparison:
         larger = np.maximum(ours, theirs)
         margin = np.where(np.isinf(larger), least, np.maximum(least, RELATIVE_DIFFERENCE * larger))
     better, worse = (np.sum(~null & (each > margin), axis=1) for each in (-difference, difference))
-    return PairedComparison(
-        first.cases,
-        tuple(
-            FigureComparison(
-                figure.name,
-                int(better[place]),
-                int(worse[place]),
-                int(np.sum(null[place])),
-                _median(difference[place][~null[place]]),
-            )
-            for place, figure in enumerate(FIGURES)
-        ),
-    )
+    found: dict[str, FigureComparison] = {}
+    for place, figure in enumerate(FIGURES):
+        median = _median(difference[place][~null[place]])
+        found[figure.name] = FigureComparison(
+            int(better[place]),
+            int(worse[place]),
+            int(np.sum(null[place])),
+            median if math.isfinite(median) else None,
+            median > 0.0,
+        )
+    return PairedComparison(first.cases, found)
 
 
-def dominators_of(controllers: Mapping[str, CaseFigures]) -> dict[str, list[str]]:
+def dominators_of(controllers: Mapping[str, CaseFigures]) -> dict[str, tuple[str, ...]]:
     """
     Return for each of the controllers on the same cases those that dominate it.
 
@@ -130,11 +131,11 @@ def dominators_of(controllers: Mapping[str, CaseFigures]) -> dict[str, list[str]
     """
     among = len(controllers)
     return {
-        name: [
+        name: tuple(
             other
             for other, theirs in controllers.items()
             if other != name and compare(theirs, ours).dominates(among=among)
-        ]
+        )
         for name, ours in controllers.items()
     }
 
@@ -142,8 +143,9 @@ def dominators_of(controllers: Mapping[str, CaseFigures]) -> dict[str, list[str]
 @cache
 def sign_test(more: int, fewer: int) -> float:
     """Return P(X >= more) for X binomial of more + fewer trials with the chance 1/2."""
-    trials = more + fewer
-    return sum(math.comb(trials, each) for each in range(more, trials + 1)) / 2**trials
+    from scipy.stats import binom
+
+    return float(binom.sf(more - 1, more + fewer, 0.5))
 
 
 def _median(values: np.ndarray) -> float:

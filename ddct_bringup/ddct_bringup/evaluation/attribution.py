@@ -24,8 +24,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_bringup.campaign_report.statistics.outcome import CONFIDENCE
-from ddct_bringup.campaign_report.statistics.parts import Part, parts_of, worst_of
+from ddct_bringup.evaluation.parts import Part, parts_of, worst_of
+from ddct_bringup.evaluation.share import CONFIDENCE, Share
 
 METHOD = 'main effect of each key, permutation test with Holm correction, bootstrap interval'
 FEWEST = 5
@@ -42,23 +42,39 @@ class Effect:
     """Effect of one key on failure."""
 
     key: str
+    drives: bool
+    """Whether the key drives failure beyond chance."""
     explained: float
     """Main effect of the key on failure, 0 to 1."""
     interval: tuple[float, float]
     """Ends of the interval of the main effect, at `CONFIDENCE`."""
     p_value: float
     """Probability of such an effect by chance alone, corrected for the number of keys."""
-    parts: tuple[Part, ...]
+    worst_part: Part
+    """Part of the range, or group of names, in which failure is most frequent."""
 
-    @property
-    def drives(self) -> bool:
-        """Whether the key drives failure beyond chance."""
-        return self.p_value <= 1.0 - CONFIDENCE
 
-    @property
-    def worst_part(self) -> Part:
-        """Part of the range, or group of names, in which failure is most frequent."""
-        return worst_of(self.parts)
+@dataclass(frozen=True)
+class Causes:
+    """Keys that drive failure; none where the failed runs, or the others, are too few."""
+
+    failed: Share
+    too_few: str
+    """Reason for the missing keys, empty where there are some."""
+    keys: tuple[Effect, ...]
+
+
+def causes_of(values: Mapping[str, np.ndarray], failed: np.ndarray) -> Causes:
+    """
+    Return which keys drive (n,) failures.
+
+    `values` has by key the (n,) numbers or names of the runs; keys of one value are left out.
+    """
+    share = Share(int(np.sum(failed)), len(failed))
+    if why := too_few(failed):
+        return Causes(share, why, ())
+    varied = {key: each for key, each in values.items() if len(set(each.tolist())) > 1}
+    return Causes(share, '', tuple(effects_of(varied, failed)))
 
 
 def too_few(failed: np.ndarray) -> str:
@@ -84,7 +100,13 @@ def effects_of(values: Mapping[str, np.ndarray], failed: np.ndarray) -> list[Eff
     chances = {key: _chance(random, parts) for key, parts in tables.items()}
     corrected = holm(chances)
     found = [
-        Effect(key, *_explained_with_interval(random, parts), corrected[key], parts)
+        Effect(
+            key,
+            corrected[key] <= 1.0 - CONFIDENCE,
+            *_explained_with_interval(random, parts),
+            corrected[key],
+            worst_of(parts),
+        )
         for key, parts in tables.items()
     ]
     return sorted(found, key=lambda each: (each.p_value, -each.explained))
@@ -92,7 +114,9 @@ def effects_of(values: Mapping[str, np.ndarray], failed: np.ndarray) -> list[Eff
 
 def _counts(parts: tuple[Part, ...]) -> tuple[np.ndarray, np.ndarray]:
     """Return the numbers of runs and of failed runs in each part, (parts,) each."""
-    return np.array([part.runs for part in parts]), np.array([part.failed for part in parts])
+    counts = [(part.failed.of, part.failed.count) for part in parts]
+    runs, failed = np.array(counts).T
+    return runs, failed
 
 
 def _ratio(runs: np.ndarray, failed: np.ndarray) -> np.ndarray:

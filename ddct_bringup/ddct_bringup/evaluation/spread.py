@@ -1,12 +1,13 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Distribution of a quantity over the engaged runs, and its worst case."""
+"""Distribution of a quantity over the engaged runs, and its worst cases."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from ddct_bringup.verdict.state import ENGAGED, INVALID
+from ddct_plant.files.json_records import Inline
 
 _PROBABILITIES = (0.05, 0.50, 0.95)
 """Probabilities of P5, P50 and P95."""
@@ -24,42 +25,59 @@ class Quantiles:
 
 
 @dataclass(frozen=True)
-class Spread:
-    """Statistics of one quantity over some runs; runs by their position among them."""
+class RunValue:
+    """Value of a quantity in one run, with the run's index and state."""
 
-    engaged: int
-    """Number of engaged runs."""
+    value: float
+    index: int
+    """Index of the run; in a benchmark the number of its case."""
+    state: str
+
+
+@dataclass(frozen=True)
+class QuantitySummary:
+    """Distribution of a quantity over the engaged runs of a group, and its worst cases."""
+
+    unit: str
     with_value: int
     """Number of engaged runs that have a value."""
-    quantiles: Quantiles
-    """
-    Quantiles P5, P50 and P95 of the values of engaged runs, with signs; None without a value.
-    """
-    cvar: float | None
+    quantiles: Inline[Quantiles]
+    """Quantiles P5, P50 and P95 of the values of engaged runs, with signs."""
+    cvar_engaged: float | None
     """Mean magnitude of the worst 5 % of the engaged runs with a value, None for fewer than 20."""
-    worst_engaged: int | None
-    """Position of the engaged run with the largest magnitude, the first of equals."""
-    worst: int | None
-    """Position of the valid run with the largest magnitude, failed ones included."""
+    worst_engaged: RunValue | None
+    """Engaged run with the largest magnitude, the first of equals; None without a value."""
+    worst: RunValue | None
+    """Valid run with the largest magnitude, failed ones included."""
 
 
-def spread_of(values: np.ndarray, outcomes: np.ndarray) -> Spread:
+def spread_of(
+    unit: str, values: np.ndarray, outcomes: np.ndarray, index: np.ndarray, states: np.ndarray
+) -> QuantitySummary:
     """
-    Return the statistics of (n,) values, NaN where there is none, with the runs' outcomes.
+    Return the statistics of (n,) values, NaN where there is none.
 
-    Only engaged runs with a value take part in quantiles and CVaR. Failed runs are neither
-    included nor ranked: their number is a separate result.
+    `outcomes`, `index` and `states` are those of the runs, (n,) each. Only engaged runs with a
+    value take part in quantiles and CVaR. Failed runs are neither included nor ranked: their
+    number is a separate result.
     """
     engaged = outcomes == ENGAGED
     taken = values[engaged & ~np.isnan(values)]
     magnitudes = np.abs(values)
-    return Spread(
-        engaged=int(np.sum(engaged)),
+
+    def worst(among: np.ndarray) -> RunValue | None:
+        place = _largest(np.where(among, magnitudes, np.nan))
+        if place is None:
+            return None
+        return RunValue(float(values[place]), int(index[place]), str(states[place]))
+
+    return QuantitySummary(
+        unit=unit,
         with_value=len(taken),
         quantiles=quantiles_of(taken),
-        cvar=conditional_value_at_risk(np.abs(taken)) if len(taken) >= ONE_IN else None,
-        worst_engaged=_largest(np.where(engaged, magnitudes, np.nan)),
-        worst=_largest(np.where(outcomes == INVALID, np.nan, magnitudes)),
+        cvar_engaged=conditional_value_at_risk(np.abs(taken)) if len(taken) >= ONE_IN else None,
+        worst_engaged=worst(engaged),
+        worst=worst(outcomes != INVALID),
     )
 
 

@@ -15,46 +15,46 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_bringup.benchmark.statistics.case_figures import FIGURES, LEVEL, CaseFigures
+from ddct_bringup.evaluation.case_figures import FIGURES, LEVEL, CaseFigures
 
 METHOD = 'van Elteren test, one-sided'
 
 
 @dataclass(frozen=True)
-class FigureGap:
+class Gap:
     """Difference of one figure between development and held-out cases."""
 
     name: str
     p_value: float | None
     """Probability that held-out runs are so much worse by chance; None without values."""
     worse: float | None
-    """Probability that a held-out run is worse than one of development; 0.5 where alike."""
-    null: int
+    """
+    Probability that a held-out run is worse than one of development; 0.5 where they are alike.
+    """
+    left_out: int
     """Number of successes left out, since they have no value."""
-
-    @property
-    def differs(self) -> bool:
-        """Whether the gap is beyond chance, with all figures taken together (Bonferroni)."""
-        return self.p_value is not None and self.p_value * len(FIGURES) <= LEVEL
+    differs: bool
+    """Whether it is beyond chance, with all figures taken together (Bonferroni)."""
 
 
 def gaps_of(
     development: tuple[CaseFigures, Sequence[str] | np.ndarray],
     held_out: tuple[CaseFigures, Sequence[str] | np.ndarray],
-) -> list[FigureGap]:
+) -> tuple[Gap, ...]:
     """Return the gap of each figure; both sets of cases come with the scenario of each case."""
     sets = [(each, np.asarray(scenarios)) for each, scenarios in (development, held_out)]
     names = np.unique(np.concatenate([scenarios for _, scenarios in sets]))
-    found: list[FigureGap] = []
+    found: list[Gap] = []
     for place, figure in enumerate(FIGURES):
         strata = [
             tuple(_values(each, place, scenarios == name) for each, scenarios in sets)
             for name in names
         ]
         p_value, worse = van_elteren(strata)
-        null = sum(int(np.sum(each.without_value[place])) for each, _ in sets)
-        found.append(FigureGap(figure.name, p_value, worse, null))
-    return found
+        left_out = sum(int(np.sum(each.without_value[place])) for each, _ in sets)
+        differs = p_value is not None and p_value * len(FIGURES) <= LEVEL
+        found.append(Gap(figure.name, p_value, worse, left_out, differs))
+    return tuple(found)
 
 
 def _values(figures: CaseFigures, place: int, chosen: np.ndarray) -> np.ndarray:
@@ -77,21 +77,19 @@ def van_elteren(
     of a normal distribution. P. van Elteren 1960, On the combination of independent two sample
     tests of Wilcoxon; E. L. Lehmann 1975, Nonparametrics, pages 132 to 141.
     """
+    from scipy.stats import norm, rankdata, tiecorrect
+
     distance = variance = pairs = 0.0
     for first, second in strata:
         n, m, total = len(first), len(second), len(first) + len(second)
         if not n or not m:
             continue
-        _, places, counts = np.unique(
-            np.concatenate([first, second]), return_inverse=True, return_counts=True
-        )
-        ranks = (np.cumsum(counts) - (counts - 1) / 2.0)[places]
-        ties = float(np.sum(counts**3 - counts)) / (total * (total - 1))
+        ranks = rankdata(np.concatenate([first, second]))
         distance += (float(np.sum(ranks[n:])) - m * (total + 1) / 2.0) / (total + 1)
-        variance += n * m * (total + 1 - ties) / (12.0 * (total + 1) ** 2)
+        variance += n * m * tiecorrect(ranks) / (12.0 * (total + 1))
         pairs += n * m / (total + 1)
     if not pairs:
         return None, None
     if variance <= 0.0:
         return 1.0, 0.5
-    return math.erfc(distance / math.sqrt(2.0 * variance)) / 2.0, 0.5 + distance / pairs
+    return float(norm.sf(distance / math.sqrt(variance))), 0.5 + float(distance / pairs)

@@ -2,14 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Differences of two controllers on the same cases."""
 
-import math
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
-import scipy
 
-from ddct_bringup.campaign_report.statistics.outcome import CONFIDENCE
-from ddct_bringup.campaign_report.statistics.spread import Quantiles, quantiles_of
+from ddct_bringup.evaluation.share import CONFIDENCE
+from ddct_bringup.evaluation.spread import Quantiles, quantiles_of
 from ddct_bringup.verdict.state import ENGAGED
 from ddct_plant.files.json_records import Inline
 
@@ -47,20 +46,24 @@ class PairedDifference:
 
 
 def difference_of(
-    first: np.ndarray, second: np.ndarray, outcomes: tuple[np.ndarray, np.ndarray]
+    first: np.ndarray,
+    second: np.ndarray,
+    outcomes: tuple[np.ndarray, np.ndarray],
+    *,
+    sample: bool = True,
 ) -> PairedDifference:
     """
     Return the difference of magnitudes over the cases in which both engaged and have a value.
 
     `first` and `second` are the (n,) values of both controllers, NaN where there is none. Negative
-    values are in favour of the first controller: smaller is better for each quantity.
+    values are in favour of the first controller: smaller is better for each quantity. Cases that
+    are no random `sample` have no interval.
     """
     both = (outcomes[0] == ENGAGED) & (outcomes[1] == ENGAGED)
     differences = (np.abs(first) - np.abs(second))[both]
     differences = differences[~np.isnan(differences)]
-    return PairedDifference(
-        len(differences), quantiles_of(differences), median_interval(differences)
-    )
+    interval = median_interval(differences) if sample else None
+    return PairedDifference(len(differences), quantiles_of(differences), interval)
 
 
 def median_interval(values: np.ndarray) -> tuple[float, float] | None:
@@ -70,18 +73,17 @@ def median_interval(values: np.ndarray) -> tuple[float, float] | None:
     Its ends are the values of rank k and n + 1 - k, with the largest k for which P(Binomial(n,
     1/2) < k) is at most 2.5 %. Fewer than six values have none.
     """
-    outside = (1.0 - CONFIDENCE) / 2.0
     runs = len(values)
-    rank = _quantile_of_half(outside, runs) if runs else 0
+    rank = _rank(runs)
     if rank < 1:
         return None
     ordered = np.sort(values)
     return float(ordered[rank - 1]), float(ordered[runs - rank])
 
 
-def _quantile_of_half(probability: float, runs: int) -> int:
-    """Return the smallest k with P(Binomial(runs, 1/2) <= k) of at least a probability."""
-    # The same as scipy.stats.binom.ppf; scipy.stats takes long to import.
-    rank = math.ceil(scipy.special.bdtrik(probability, runs, 0.5))
-    below = rank > 0 and scipy.special.bdtr(rank - 1, runs, 0.5) >= probability
-    return rank - 1 if below else rank
+@cache
+def _rank(runs: int) -> int:
+    """Return the rank of the lower end of the interval of a median; 0 for none."""
+    from scipy.stats import binom
+
+    return int(binom.ppf((1.0 - CONFIDENCE) / 2.0, runs, 0.5)) if runs else 0
