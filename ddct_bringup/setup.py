@@ -47,7 +47,6 @@ setup(
         f'{PACKAGE}.campaign_report': ['*.j2', '*.css', '*.js'],
         f'{PACKAGE}.documents': ['*.j2', '*.css', '*.js'],
         f'{PACKAGE}.report': ['*.j2', '*.css', '*.js'],
-        f'{PACKAGE}.thesis': ['admissible_scenarios/*'],
         f'{PACKAGE}.tuning': ['packaged/*'],
         f'{PACKAGE}.verdict': ['*.yaml'],
         f'{PACKAGE}.reproduction.numbers': ['chapters/*.yaml'],

@@ -4,8 +4,6 @@
 
 from collections.abc import Callable, Mapping
 
-from ddct_bringup.reproduction.calibration.record_tables import all_tables
-from ddct_bringup.reproduction.calibration.record_types import CalibrationRecord
 from ddct_controllers.design.analysis.loops import continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.worst_corner import PlantCorners
 from ddct_controllers.design.h_infinity.recipes import PRINTED_WEIGHTS, THESIS_SPECIFICATIONS
@@ -26,7 +24,6 @@ from ddct_controllers.workflows.margins_command import margins_table
 from ddct_controllers.workflows.plant_command import paper_tables
 from ddct_controllers.workflows.plant_on_paper import plant_on_paper
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.files.json_records import read_json
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.program.table import Table
@@ -34,14 +31,8 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import KnownSettings, RunSettings
 from generator.actuator_tables import other_actuators
 from generator.option_tables import TABLES as OPTION_TABLES
-from generator.pages import DOCS
 from generator.score_tables import score_tables
 from generator.tuning_tables import tuning_tables
-
-
-def calibration_tables() -> Mapping[str, Table]:
-    """Return the tables of the record that `ddct reproduce calibration --json` has written."""
-    return all_tables(read_json(CalibrationRecord, DOCS / 'thesis' / 'calibration.json'))
 
 
 def h_infinity_tables() -> Mapping[str, Table]:
@@ -106,7 +97,6 @@ TABLES: Mapping[str, Callable[[], Mapping[str, Table]]] = {
         'sampled_loops': sampled_loops(),
         'other_actuators': other_actuators(),
     },
-    'calibration': calibration_tables,
     'tuning': tuning_tables,
     'missing': tables_of_missing_messages,
 }

@@ -19,7 +19,6 @@ from ddct_bringup.programs import compare
 from ddct_bringup.programs.report import main
 from ddct_bringup.programs.score import main as score
 from ddct_bringup.report.evidence import FREQUENCY_FILE
-from ddct_bringup.thesis.predictions import predicted_range
 from ddct_bringup.verdict.limits import load_limits
 from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.settings import KnownSettings, RunSettings
@@ -71,12 +70,11 @@ def test_the_text_shows_the_rounded_numbers_and_the_thesis_s(page: Path) -> None
         assert printed in reader.text
 
 
-def test_a_predicted_value_has_its_range_and_hit_or_miss(tmp_path: Path) -> None:
+def test_a_predicted_value_is_a_hit_or_a_miss(tmp_path: Path) -> None:
     record(plan('mpc3', 'headless', duration_s=3.0), tmp_path / 'mpc3')
     out = tmp_path / 'report.html'
     assert main([str(tmp_path), *NO_FLOORS, '--out', str(out)]) == 0
     text = read(out).text
-    assert predicted_range('mpc3', 'torsion_speed_std_rpm') in text
     assert 'predicted' in text
     assert 'miss' in text
     assert 'a hit is within 25 % of the print' in text

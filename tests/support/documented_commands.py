@@ -42,7 +42,6 @@ NOT_RUN_HERE = {
     'ddct verify results/mine': 'needs that benchmark',
     'ddct tune': 'takes minutes; ddct_bringup/test/tuning runs small ones',
     'ddct compare --controllers pi,tuned/pi/best.yaml': 'needs that tuning',
-    'ddct reproduce calibration': 'takes minutes; a test runs it with --quick',
 }
 """First words of commands and why no test runs them."""
 SHELL_BLOCKS = [block for block in blocks() if block.is_shell]

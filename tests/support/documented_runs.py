@@ -65,7 +65,6 @@ def furnished(install: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     for part in (
         'ddct_controllers/ddct_controllers/from_file/c_library/template',
         'ddct_plant/ddct_plant/scenario/packaged',
-        'ddct_bringup/ddct_bringup/thesis/admissible_scenarios',
     ):
         shutil.copytree(ROOT / part, folder / part)
     (folder / 'install').symlink_to(install)

@@ -15,15 +15,12 @@ from ddct_bringup.reproduction.numbers.gate_tables import count_facts
 from ddct_bringup.reproduction.numbers.number_files import thesis_numbers as listed_numbers
 from ddct_bringup.reproduction.studies.table_5_2 import SCENARIOS, rated_rows
 from ddct_bringup.reproduction.values.orders import WORN
-from ddct_bringup.thesis.predictions import predicted_range
 from ddct_bringup.thesis.table_5_1 import PREDICTED, is_thesis_run, thesis_row
 from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 from ddct_plant.base.options import require_known
 
 THESIS = 'thesis.'
 """Prefix of the column of a printed value."""
-RANGE = 'range.'
-"""Prefix of the column of a predicted range."""
 HIT = 'hit.'
 """Prefix of the column that says whether a prediction is near the print."""
 
@@ -65,9 +62,9 @@ def beside_thesis(runs: Run | Iterable[Run]) -> Any:
     Return a pandas DataFrame with a row per run: the values of Table 5.1, computed and printed.
 
     Columns by metric: the metric itself, `thesis.METRIC` as printed, and for a predicted row
-    `range.METRIC`, the text of its range over other scenarios that fit as well, and `hit.METRIC`,
-    whether it is within the tolerance. `use` is `calibrated` or `predicted`. All but the metrics
-    are None for a run without a row in the table, or of other conditions than the thesis's.
+    `hit.METRIC`, whether it is within the tolerance. `use` is `calibrated` or `predicted`. All but
+    the metrics are None for a run without a row in the table, or of other conditions than the
+    thesis's.
     """
     shown = as_runs(runs)
     return pandas.DataFrame([_row(each) for each in shown], index=_labels(shown))
@@ -100,6 +97,5 @@ def _row(run: Run) -> dict[str, object]:
         columns[name] = value
         columns[f'{THESIS}{name}'] = printed.printed_values()[name] if printed else None
         predicted = printed is not None and printed.use == PREDICTED
-        columns[f'{RANGE}{name}'] = predicted_range(run.controller, name) if predicted else None
         columns[f'{HIT}{name}'] = printed.hit(name, value) if printed and predicted else None
     return columns

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Program `reproduce`: the thesis's numbers, figures, studies and calibration, made again."""
+"""Program `reproduce`: the thesis's numbers, figures and studies, made again."""
 
 from ddct_bringup.api import shell
 from ddct_plant.program.command_line import LateSubcommand, ProgramParser, run_subcommands
@@ -14,9 +14,6 @@ _COMMANDS = {
     'studies': LateSubcommand(
         'studies of the predictive controllers', lambda: shell.studies_command
     ),
-    'calibration': LateSubcommand(
-        'the thesis scenario, fitted to three rows of Table 5.1', lambda: shell.calibration_command
-    ),
 }
 
 _DESCRIPTION = 'Compute what the thesis prints, and hold it against the print.'
@@ -25,7 +22,6 @@ examples:
   ddct reproduce numbers                     every printed number beside ours
   ddct reproduce figures --out figures       the thesis's figures, drawn again
   ddct reproduce studies                     what decides how the predictive controllers fare
-  ddct reproduce calibration --quick         the scenario, fitted to Table 5.1
 
 Each of them has its own --help."""
 

@@ -61,10 +61,6 @@ _THESIS = (
         'whether the scenario was fitted to this row of Table 5.1 of the thesis, or the row took '
         'no part in the fit.',
     ),
-    Definition(
-        'range below a figure',
-        'what the admissible scenarios predict. A dash at one end: some of them have no value.',
-    ),
 )
 _STATES = (
     Definition(

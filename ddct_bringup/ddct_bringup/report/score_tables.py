@@ -9,7 +9,6 @@ from ddct_bringup.documents.page_parts import number_text, value_text
 from ddct_bringup.metrics.catalogue import FIGURES, JERK_OVER_LEAST, METRICS, OTHERS, TABLE_5_1
 from ddct_bringup.metrics.metric import Metric
 from ddct_bringup.scores.scored_recording import ScoredRecording
-from ddct_bringup.thesis.predictions import predicted_range
 from ddct_bringup.thesis.table_5_1 import PREDICTED, ThesisRow, is_thesis_run, thesis_row
 from ddct_bringup.verdict.limits import LimitResult
 from ddct_plant.program.table import Quantity
@@ -36,8 +35,6 @@ class Cell:
     """Position of the thesis's value along the bar, 0 to 1."""
     difference: str = ''
     """Computed value minus the thesis's, signed."""
-    spread: str = ''
-    """Range over the admissible scenarios, for a predicted value."""
     verdict: str = ''
     """Hit or miss, for a predicted value of a valid run."""
     why_dash: str = ''
@@ -93,7 +90,6 @@ def _cell(column: Metric, run: ScoredRecording, row: ThesisRow | None, largest: 
         thesis_text=f'{thesis:.2f}',
         thesis_share=thesis / largest,
         difference='' if value is None else f'{100.0 * (value / thesis - 1.0):+.0f} %',
-        spread=predicted_range(row.controller, column.key) if predicted else '',
         verdict=row.verdict(column.key, value) if predicted and scores.valid else '',
     )
 

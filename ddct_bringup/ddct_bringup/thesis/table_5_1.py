@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Table 5.1 as printed, and which of its rows the scenario was fitted to."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ddct_bringup.thesis.table_metrics import TABLE_METRICS
@@ -38,6 +39,20 @@ class ThesisRow:
     def cells(self) -> tuple[str, ...]:
         """Return the three values as text, with the printed digits."""
         return tuple(f'{value:g}' for value in self.printed_values().values())
+
+    def scaled_deviations(self, values: Mapping[str, float | None]) -> dict[str, float | None]:
+        """
+        Return (computed / printed - 1) / tolerance by metric name, None for an undefined value.
+
+        The tolerances are those of the fitted rows.
+        """
+        deviations: dict[str, float | None] = {}
+        for name, printed in self.printed_values().items():
+            value = values[name]
+            deviations[name] = (
+                None if value is None else (value / printed - 1.0) / TOLERANCES[name]
+            )
+        return deviations
 
     def hit(self, name: str, value: float | None) -> bool:
         """Return whether a predicted value is within the tolerance; an undefined one is not."""

@@ -9,11 +9,11 @@ from labelled_runs import Spoiled
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.metrics.engagement import Engagement
-from ddct_bringup.reproduction.calibration.parameters import FROZEN_GAINS
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import state_of
 from ddct_controllers.interface import Command, Controller
+from ddct_controllers.linear import PI_OPTIONS
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.file import load_scenario
@@ -37,7 +37,7 @@ class WrongSign(Controller):
 
 def run(controller='pi', gain=1.0, duration_s=3.0, clutch='linear', **settings):
     """Return a run of the thesis's scenario with the gains of the PI multiplied by `gain`."""
-    gains = {key: gain * value for key, value in FROZEN_GAINS.items()}
+    gains = {key: gain * option.default for key, option in PI_OPTIONS.items()}
     scenario = dataclasses.replace(
         THESIS, controllers={'pi': gains}, duration_s=duration_s, clutch=clutch
     )

@@ -32,7 +32,7 @@ SECTIONS = (
     ('drive', 'closing: {margin: 1.3}\n'),
 )
 DIGEST_OF_THESIS = 'e930082b5253a695'
-"""Digest of `thesis` from before scenarios had sections; the kept predictions contain it."""
+"""Digest of `thesis` from before scenarios had sections."""
 
 
 @pytest.fixture

@@ -45,7 +45,6 @@ if TYPE_CHECKING:
     from ddct_bringup.processes.fork_server import start_server
     from ddct_bringup.processes.live_process import live_view
     from ddct_bringup.report.page import report_page
-    from ddct_bringup.reproduction.calibration import command as calibration_command
     from ddct_bringup.reproduction.figures import command as figures_command
     from ddct_bringup.reproduction.numbers import command as numbers_command
     from ddct_bringup.reproduction.studies import command as studies_command

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from ddct_bringup.reproduction.studies import (
-    admissible_scenarios,
     engagements,
     mpc4_readings,
     readings,
+    scenario_changes,
     sweeps,
     table_5_2,
     wear,
@@ -28,13 +28,11 @@ from ddct_plant.program.printed_table import print_note, print_table
 from ddct_plant.program.table import with_reasons
 
 _ABOUT: Mapping[StudyFunction, str] = {
-    admissible_scenarios.admissible_scenarios: 'the scenarios that fit Table 5.1 as well',
     sweeps.engine_authority: 'MPC4 by how far it may move the engine torque',
     mpc4_readings.mpc4_readings: 'MPC4 by reading of Section 4.3',
     sweeps.pedal_positions: '`pedal_mpc` by pedal position',
-    admissible_scenarios.prediction_ranges: 'the MPC rows of Table 5.1 over all these scenarios',
     readings.readings: 'MPC1-3 by reading of Section 4.2 and Table 4.1',
-    admissible_scenarios.score_windows: 'the MPC rows by the end of the score window',
+    scenario_changes.scenario_changes: 'the predicted rows by change of the scenario',
     sweeps.state_of_art: 'controllers after works that the thesis cites, new and worn',
     table_5_2.table_5_2_in_numbers: 'Table 5.2: our figures, the words they come to, the print',
     mpc4_readings.torque_level: 'MPC4 by its pull towards the demand',
@@ -43,7 +41,6 @@ _ABOUT: Mapping[StudyFunction, str] = {
     wear.wear: 'MPC3 and its descendants, Hinf2 and LS8 at every wear gain',
     wear.wear_estimate: 'how well `mpc_wear` estimates K_usura',
     wear.wear_feedforward: '`wear` in the architecture of Figure 5.1',
-    admissible_scenarios.worn_ranges: 'Table 5.2 over all scenarios that fit',
 }
 STUDIES: Mapping[str, StudyFunction] = engagements.ENGAGEMENTS | {
     function.__name__: function for function in _ABOUT

@@ -82,7 +82,8 @@ def dash_reason(header: str, row: Sequence[str]) -> str:
         return 'the thesis does not print it'
     if header.startswith('growth'):
         return 'C_fOL alone has no feedback'
-    return _UNDEFINED.get(header, 'does not apply to this row')
+    reasons = (reason for name, reason in _UNDEFINED.items() if header.endswith(name))
+    return next(reasons, 'does not apply to this row')
 
 
 def close_time_s(trajectory: Trajectory, start: int) -> float | None:
@@ -149,12 +150,9 @@ _UNDEFINED = {
     'peak jerk m/s^3': METRICS['peak_jerk_m_s3'].undefined,
     'friction kJ': METRICS['friction_work_j'].undefined,
     'releases': 'the clutch never locked, or cannot',
-    'value': 'w_d does not reach zero',
-    **dict.fromkeys(
-        ('printed', 'verdict', 'print within the range'), 'the thesis prints no such row'
-    ),
+    'largest deviation of the fitted rows, tolerances': 'w_d does not reach zero in one of them',
     **dict.fromkeys(
         ('w_d, printed', 'w_sr and A_x, printed'), 'the thesis rates no clutch of this wear'
     ),
 }
-"""Reason of a dash by header."""
+"""Reason of a dash by the end of its header."""

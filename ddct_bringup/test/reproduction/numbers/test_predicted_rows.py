@@ -11,22 +11,12 @@ from made_scores import made_scores
 
 from ddct_bringup.reproduction.numbers.number_files import thesis_numbers
 from ddct_bringup.scores.comparison_table import print_comparison
-from ddct_bringup.thesis import predictions
-from ddct_bringup.thesis.predictions import Prediction, Predictions, predicted_range
 from ddct_bringup.thesis.table_5_1 import PREDICTED, PREDICTION_TOLERANCE, THESIS_TABLE, thesis_row
 from ddct_bringup.thesis.table_metrics import TABLE_METRICS
-from ddct_plant.scenario.file import load_scenario, scenario_digest
+from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 THESIS = load_scenario('thesis')
-KEPT = Predictions(
-    scenario_digest(THESIS),
-    {
-        '5.1 mpc3 engagement_time_s': Prediction(0.6, {'a': 0.55, 'b': 0.7, 'c': None}),
-        '5.1 mpc3 torsion_speed_std_rpm': Prediction(1.0, {'a': 0.5, 'b': 1.5, 'c': 1.0}),
-        '5.1 mpc3 acceleration_std_m_s2': Prediction(0.3, {'a': 0.3, 'b': 0.3, 'c': 0.3}),
-    },
-)
 VALUES = (0.62, 1.2, 0.19)
 
 
@@ -89,15 +79,6 @@ def test_nothing_of_the_thesis_is_shown_under_other_conditions(settings):
     assert row_of(lines, 'mpc3')[1:4] == ['0.620', '1.200', '0.190']
     assert '0.90' not in row_of(lines, 'mpc3')
     assert not any('predicted' in line or 'thesis:' in line for line in lines)
-
-
-def test_a_prediction_has_its_range_in_the_scenario_that_it_is_of_alone(monkeypatch):
-    monkeypatch.setattr(predictions, 'kept_predictions', lambda: KEPT)
-    ranges = [predicted_range('mpc3', name) for name in TABLE_METRICS]
-    assert ranges == ['0.550 to -', '0.50 to 1.50', '0.300 to 0.300']
-    other = dataclasses.replace(KEPT, scenario_digest='another')
-    monkeypatch.setattr(predictions, 'kept_predictions', lambda: other)
-    assert not any(predicted_range('mpc3', name) for name in TABLE_METRICS)
 
 
 @pytest.mark.parametrize(

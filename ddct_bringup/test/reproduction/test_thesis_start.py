@@ -13,7 +13,7 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-PAGE = Path(__file__).resolve().parents[4] / 'docs' / 'thesis' / 'calibration.md'
+PAGE = Path(__file__).resolve().parents[3] / 'docs' / 'thesis' / 'calibration.md'
 SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 
 
