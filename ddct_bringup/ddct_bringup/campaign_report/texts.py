@@ -7,7 +7,7 @@ import shlex
 from ddct_bringup.documents.page_parts import value_text
 from ddct_bringup.evaluation.attribution import FEWEST
 from ddct_bringup.evaluation.boundaries import BoundarySide
-from ddct_bringup.evaluation.parts import MOST_PARTS, Part
+from ddct_bringup.evaluation.parts import MOST_PARTS, KeyPart
 from ddct_bringup.evaluation.share import CONFIDENCE, METHOD
 from ddct_bringup.evaluation.spread import ONE_IN
 from ddct_bringup.evaluation.summary import GroupSummary, PairSummary, Summary
@@ -104,7 +104,7 @@ def range_text(low: float, high: float) -> str:
     return value_text(low) if low == high else f'{value_text(low)} to {value_text(high)}'
 
 
-def where_text(part: Part) -> str:
+def where_text(part: KeyPart) -> str:
     """Return a part of a key's values: the ends of a range, or names."""
     if part.low is None or part.high is None:
         return ', '.join(part.names)
@@ -116,7 +116,7 @@ def p_text(p_value: float) -> str:
     return '< 0.001' if p_value < 0.001 else f'{p_value:.3f}'
 
 
-def part_text(part: Part) -> str:
+def part_text(part: KeyPart) -> str:
     """Return the part of a key's values in which failure is most frequent."""
     return f'{part.failed.count} of {part.failed.of} at {where_text(part)}'
 

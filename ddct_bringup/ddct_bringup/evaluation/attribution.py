@@ -24,7 +24,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_bringup.evaluation.parts import Part, parts_of, worst_of
+from ddct_bringup.evaluation.parts import KeyPart, parts_of, worst_of
 from ddct_bringup.evaluation.share import CONFIDENCE, Share
 
 METHOD = 'main effect of each key, permutation test with Holm correction, bootstrap interval'
@@ -50,7 +50,7 @@ class Effect:
     """Ends of the interval of the main effect, at `CONFIDENCE`."""
     p_value: float
     """Probability of such an effect by chance alone, corrected for the number of keys."""
-    worst_part: Part
+    worst_part: KeyPart
     """Part of the range, or group of names, in which failure is most frequent."""
 
 
@@ -112,7 +112,7 @@ def effects_of(values: Mapping[str, np.ndarray], failed: np.ndarray) -> list[Eff
     return sorted(found, key=lambda each: (each.p_value, -each.explained))
 
 
-def _counts(parts: tuple[Part, ...]) -> tuple[np.ndarray, np.ndarray]:
+def _counts(parts: tuple[KeyPart, ...]) -> tuple[np.ndarray, np.ndarray]:
     """Return the numbers of runs and of failed runs in each part, (parts,) each."""
     counts = [(part.failed.of, part.failed.count) for part in parts]
     runs, failed = np.array(counts).T
@@ -134,7 +134,7 @@ def _without_chance(ratio: np.ndarray | float, runs: int, parts: int) -> np.ndar
     return 1.0 - (1.0 - ratio) * (runs - 1) / (runs - parts)
 
 
-def _chance(random: np.random.Generator, parts: tuple[Part, ...]) -> float:
+def _chance(random: np.random.Generator, parts: tuple[KeyPart, ...]) -> float:
     """Return the probability that random failures are as unequal as these, 0 to 1."""
     runs, failed = _counts(parts)
     dealt = random.multivariate_hypergeometric(
@@ -145,7 +145,7 @@ def _chance(random: np.random.Generator, parts: tuple[Part, ...]) -> float:
 
 
 def _explained_with_interval(
-    random: np.random.Generator, parts: tuple[Part, ...]
+    random: np.random.Generator, parts: tuple[KeyPart, ...]
 ) -> tuple[float, tuple[float, float]]:
     """Return the main effect and the ends of its interval, each within 0 to 1."""
     runs, failed = _counts(parts)

@@ -18,7 +18,7 @@ MOST_PARTS = 10
 
 
 @dataclass(frozen=True)
-class Part:
+class KeyPart:
     """Runs in one part of a key's values: a range of numbers, or names."""
 
     failed: Share
@@ -36,7 +36,7 @@ class Part:
         return self.failed.count / self.failed.of
 
 
-def parts_of(values: np.ndarray, failed: np.ndarray, runs_in_part: int) -> tuple[Part, ...]:
+def parts_of(values: np.ndarray, failed: np.ndarray, runs_in_part: int) -> tuple[KeyPart, ...]:
     """
     Return the parts of a key's values: ranges of numbers, or one for each name.
 
@@ -46,13 +46,13 @@ def parts_of(values: np.ndarray, failed: np.ndarray, runs_in_part: int) -> tuple
     if not np.issubdtype(values.dtype, np.number):
         names = values.astype(str)
         return tuple(
-            Part(_failed(failed[names == name]), names=(name,))
+            KeyPart(_failed(failed[names == name]), names=(name,))
             for name in dict.fromkeys(names.tolist())
         )
     places = places_in_range(values, runs_in_part)
     chosen = [places == each for each in range(int(places.max()) + 1)]
     return tuple(
-        Part(_failed(failed[rows]), float(values[rows].min()), float(values[rows].max()))
+        KeyPart(_failed(failed[rows]), float(values[rows].min()), float(values[rows].max()))
         for rows in chosen
     )
 
@@ -75,7 +75,7 @@ def places_in_range(values: np.ndarray, runs_in_part: int) -> np.ndarray:
     return np.unique(np.searchsorted(edges, values, side='right'), return_inverse=True)[1]
 
 
-def worst_of(parts: Sequence[Part]) -> Part:
+def worst_of(parts: Sequence[KeyPart]) -> KeyPart:
     """
     Return the part with the largest share of failed runs: a range, the first of equals, or names.
 
@@ -93,7 +93,7 @@ def worst_of(parts: Sequence[Part]) -> Part:
     between = (failed[:-1] - mean * inside) ** 2 / (inside * (runs[-1] - inside))
     count = int(np.argmax(between)) + 1 if len(names) > 1 else 1
     chosen = by_share[:count]
-    return Part(
+    return KeyPart(
         Share(int(failed[count - 1]), int(runs[count - 1])),
         names=tuple(name for part in names if part in chosen for name in part.names),
     )

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from itertools import combinations_with_replacement
 
 from ddct_bringup.documents.page_parts import unit_text, value_text
+from ddct_bringup.evaluation.non_dominated import non_dominated
 from ddct_bringup.metrics.catalogue import FIGURES, METRICS
 from ddct_bringup.metrics.metric import Metric
 from ddct_bringup.scores.scored_recording import ScoredRecording
@@ -77,21 +78,6 @@ def pareto_view(runs: Sequence[ScoredRecording]) -> ParetoView | None:
         fronts=fronts,
         default=DEFAULT_PAIR if set(DEFAULT_PAIR) <= set(magnitudes) else (first, second),
     )
-
-
-def non_dominated(points: Mapping[int, tuple[float, float]]) -> list[int]:
-    """
-    Return the runs for which no other is better in one coordinate and as good in the other.
-
-    Smaller is better. Runs with equal points are all kept or all dropped.
-    """
-    return [
-        run
-        for run, (x, y) in points.items()
-        if not any(
-            other != (x, y) and other[0] <= x and other[1] <= y for other in points.values()
-        )
-    ]
 
 
 def _magnitudes(runs: Sequence[ScoredRecording]) -> dict[str, dict[int, float]]:

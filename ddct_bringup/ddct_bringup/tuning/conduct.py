@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ddct_bringup.campaign.conduct import SHARDS, begin_folder, require_going_on
+from ddct_bringup.evaluation.non_dominated import dominates
 from ddct_bringup.manifest.begun import begun_manifest
 from ddct_bringup.manifest.file_states import require_unaltered
 from ddct_bringup.manifest.inputs import InputFiles
@@ -23,7 +24,7 @@ from ddct_bringup.run.output_folder import (
     locked_folders,
 )
 from ddct_bringup.tuning.evaluation import TrialRuns, evaluation
-from ddct_bringup.tuning.front import dominates, why_all_invalid
+from ddct_bringup.tuning.front import why_all_invalid
 from ddct_bringup.tuning.loop_quantities import update_time
 from ddct_bringup.tuning.plan import RecordedTuning, TuningPlan
 from ddct_bringup.tuning.specification.development import parts_of

@@ -11,12 +11,6 @@ from ddct_bringup.tuning.specification.spec import TuningSpec
 from ddct_bringup.tuning.trial import INFEASIBLE, Trial
 
 
-def dominates(first: Sequence[float], second: Sequence[float]) -> bool:
-    """Return whether the first costs are nowhere above the second ones, and below in one."""
-    pairs = list(zip(first, second, strict=True))
-    return all(ours <= theirs for ours, theirs in pairs) and any(a < b for a, b in pairs)
-
-
 def best_of(front: Sequence[Trial], spec: TuningSpec) -> Trial:
     """
     Return the trial of a front that is nearest to the best value of every objective.

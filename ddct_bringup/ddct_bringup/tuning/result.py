@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddct_bringup.evaluation.held_out_gaps import Gap
+from ddct_bringup.evaluation.share import Share
 from ddct_bringup.evaluation.summarise import gaps_between
 from ddct_bringup.tuning.front import best_of
 from ddct_bringup.tuning.specification.goals import RunColumns
@@ -19,7 +20,7 @@ from ddct_bringup.tuning.tuned_files import trial_file
 from ddct_bringup.tuning.tuned_names import BEST
 from ddct_bringup.tuning.tuning import Tuning
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 """Schema version of `front.json`."""
 
 
@@ -29,9 +30,8 @@ class Figures:
 
     objectives: Mapping[str, float | None]
     constraints: Mapping[str, float | None]
-    engaged: float
-    """Share of the runs that engage."""
-    runs: int
+    engaged: Share
+    """Engaged runs among all."""
     keeps_constraints: bool
 
 
@@ -173,7 +173,6 @@ def _figures(spec: TuningSpec, trial: Trial) -> Figures:
     return Figures(
         objectives={each.name: trial.estimate(each, spec) for each in spec.objectives},
         constraints={each.goal.name: trial.estimate(each.goal, spec) for each in spec.constraints},
-        engaged=float(np.mean(engaged)) if len(engaged) else 0.0,
-        runs=len(trial.rows),
+        engaged=Share(int(np.sum(engaged)), len(engaged)),
         keeps_constraints=checked.checked(spec, len(trial.rows)).state == FEASIBLE,
     )

@@ -12,7 +12,7 @@ from made_results import made_results
 from ddct_bringup.campaign_report.texts import p_text
 from ddct_bringup.evaluation import attribution as attribution_module
 from ddct_bringup.evaluation.attribution import FEWEST, effects_of, too_few
-from ddct_bringup.evaluation.parts import Part, parts_of, worst_of
+from ddct_bringup.evaluation.parts import KeyPart, parts_of, worst_of
 from ddct_bringup.evaluation.share import Share
 from ddct_bringup.evaluation.summarise import summary_of
 from ddct_bringup.verdict.state import ENGAGED, INVALID
@@ -136,7 +136,7 @@ def test_names_that_nearly_always_fail_are_one_group():
 def test_booleans_are_names():
     values = np.arange(RUNS) % 2 == 0
     (effect,) = effects_of({'cut': values}, values)
-    assert effect.worst_part == Part(Share(200, 200), names=('True',))
+    assert effect.worst_part == KeyPart(Share(200, 200), names=('True',))
 
 
 @pytest.mark.parametrize('seed', range(20))

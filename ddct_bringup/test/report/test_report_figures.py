@@ -6,8 +6,9 @@ import pytest
 from made_scores import made_limit, made_scores
 
 from ddct_bringup.documents.page_parts import unit_text, value_text
+from ddct_bringup.evaluation.non_dominated import non_dominated
 from ddct_bringup.metrics.catalogue import FIGURES, METRICS, OTHERS, TABLE_5_1
-from ddct_bringup.report.pareto import DEFAULT_PAIR, non_dominated, pair_key, pareto_view
+from ddct_bringup.report.pareto import DEFAULT_PAIR, pair_key, pareto_view
 from ddct_bringup.report.score_tables import (
     MetricColumn,
     figure_columns,

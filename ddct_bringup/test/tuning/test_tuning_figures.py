@@ -11,6 +11,7 @@ import pyarrow as pa
 import pytest
 from small_tuning import tuning
 
+from ddct_bringup.evaluation.share import Share
 from ddct_bringup.tuning.report.figures import front_figure, progress_figure, slices_figure
 from ddct_bringup.tuning.result import (
     Figures,
@@ -37,7 +38,7 @@ FRONT = [
         number,
         GAINS[number],
         None,
-        Figures({TIME.name: time, DEVIATION.name: deviation}, {}, 1.0, 1, True),
+        Figures({TIME.name: time, DEVIATION.name: deviation}, {}, Share(1, 1), True),
         None,
     )
     for number, (time, deviation) in enumerate(VALUES[:3])

@@ -243,7 +243,7 @@ def test_the_result_shows_development_beside_held_out(finished: Path) -> None:
     without = {each['name'] for each in result['gaps'] if each['p_value'] is None}
     assert without == {'response_s', 'releases'}  # a linear clutch has no lock
     assert result['before']['parameters'] == {'proportional_gain': 0.103, 'integral_gain': 0.0223}
-    assert result['before']['development']['runs'] == result['cases']
+    assert result['before']['development']['engaged']['of'] == result['cases']
     assert sum(result['states'].values()) == result['trials'] == 20
     assert result['runs'] < result['all_runs']
 

@@ -120,7 +120,7 @@ def _values(result: TuningResult, figures: Figures) -> Row:
     return (
         *(figures.objectives[goal.name] for goal in result.objectives),
         *(figures.constraints[goal.name] for goal in result.constraints),
-        100.0 * figures.engaged,
+        100.0 * (figures.engaged.value or 0.0),
         Cell('yes' if keeps else 'no', alarming=not keeps),
     )
 
