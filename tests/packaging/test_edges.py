@@ -25,8 +25,6 @@ FILES = {
     'ddct_bringup/campaign/specification/distribution.py': 'specification of a campaign, YAML',
     'ddct_bringup/campaign/specification/named_files.py': 'specification of a campaign, YAML',
     'ddct_bringup/campaign/specification/parts.py': 'specification of a campaign, YAML',
-    'ddct_bringup/documents/bokeh_charts.py': 'keywords of Bokeh, and its documents',
-    'ddct_bringup/documents/chart_files.py': 'keywords of matplotlib',
     'ddct_bringup/manifest/manifest.py': 'manifest.json',
     'ddct_bringup/manifest/runs.py': 'manifest.json',
     'ddct_bringup/schemas.py': 'types of the keys of documents',

@@ -11,7 +11,7 @@ from ddct_bringup.campaign.plan import RecordedCampaign
 from ddct_bringup.campaign_report.distributions_chart import distributions_chart
 from ddct_bringup.campaign_report.folder import scenario_of
 from ddct_bringup.campaign_report.reading import grouped_rows, read_table
-from ddct_bringup.documents.chart import Axis, Chart, Line, Panel
+from ddct_bringup.documents.chart import Chart, ChartAxis, Line, Panel
 from ddct_bringup.documents.chart_files import matplotlib_figure
 from ddct_bringup.documents.palette import looks
 from ddct_bringup.report.chart_signals import ChartSignal
@@ -41,7 +41,7 @@ def figure(
     shown = as_runs(runs)
     if not shown or not quantities:
         raise ParameterError('a figure needs a run and a quantity')
-    across = Axis('time, s', (0.0, max(each.trajectory.time_s[-1] for each in shown)))
+    across = ChartAxis('time, s', (0.0, max(each.trajectory.time_s[-1] for each in shown)))
     panels = tuple(_panel(shown, key, across) for key in quantities)
     title, conditions = _title(shown)
     return matplotlib_figure(Chart(title, panels, conditions))
@@ -80,7 +80,7 @@ def thesis_figure(number: str) -> ThesisDrawing:
         return ThesisDrawing(*figures[number].draw())
 
 
-def _panel(runs: Sequence[Run], key: str, across: Axis) -> Panel:
+def _panel(runs: Sequence[Run], key: str, across: ChartAxis) -> Panel:
     """Return the panel of a quantity: a line for each run."""
     labels = run_labels([each.scores for each in runs])
     signals = [_signal(each, key) for each in runs]
@@ -88,7 +88,7 @@ def _panel(runs: Sequence[Run], key: str, across: Axis) -> Panel:
         Line(each.trajectory.time_s, signal.values(each.trajectory), look, label)
         for each, signal, look, label in zip(runs, signals, looks(len(runs)), labels, strict=True)
     )
-    return Panel(tuple(lines), across, Axis(f'{key}, {signals[0].unit}'))
+    return Panel(tuple(lines), across, ChartAxis(f'{key}, {signals[0].unit}'))
 
 
 def _title(runs: Sequence[Run]) -> tuple[str, str]:

@@ -4,7 +4,7 @@
 
 import numpy as np
 
-from ddct_bringup.documents.chart import Axis, Chart, Line, Panel
+from ddct_bringup.documents.chart import Chart, ChartAxis, Line, Panel
 from ddct_bringup.documents.page_parts import unit_text
 from ddct_bringup.documents.palette import LineLook, looks
 from ddct_bringup.evaluation.grouped_rows import Group, GroupedRows
@@ -32,8 +32,8 @@ def distributions_chart(results: GroupedRows, scenario: str) -> Chart:
                 _curve(results, group, quantity, look)
                 for group, look in zip(results.groups, found, strict=True)
             ),
-            Axis(', '.join(filter(None, (quantity.symbol, unit_text(quantity.unit))))),
-            Axis('share of valid runs', (0.0, 1.02)),
+            ChartAxis(', '.join(filter(None, (quantity.symbol, unit_text(quantity.unit))))),
+            ChartAxis('share of valid runs', (0.0, 1.02)),
         )
         for quantity in metrics
     )

@@ -3,8 +3,8 @@
 """Charts of a page by Bokeh: their style, and the document that the page's script draws."""
 
 from collections.abc import Mapping, Sequence
-from functools import cache
-from typing import TYPE_CHECKING, Any
+from functools import cache, partial
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from markupsafe import Markup, escape
@@ -16,8 +16,8 @@ from ddct_bringup.documents.chart import (
     Item,
     Key,
     Line,
+    Marks,
     Panel,
-    Points,
     legend,
 )
 from ddct_bringup.documents.palette import mark_svg, patch_svg, sample_svg
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from bokeh.models import Model, Range
     from bokeh.models.renderers import GlyphRenderer
     from bokeh.plotting import figure
-
-_TOOLS = 'xbox_zoom,xpan,xwheel_zoom,reset,save'
 
 
 def library() -> Markup:
@@ -43,7 +41,14 @@ def _library() -> Markup:
     return Markup('\n'.join(Resources('inline', components=['bokeh'], log_level='error').js_raw))
 
 
-def styled_figure(height_px: int, **options: Any) -> 'figure':
+def styled_figure(
+    height_px: int,
+    *,
+    tools: str = 'xbox_zoom,xpan,xwheel_zoom,reset,save',
+    active_drag: str | None = 'xbox_zoom',
+    window_axis: Literal['none', 'x'] = 'x',
+    **options: Any,
+) -> 'figure':
     """
     Return an empty figure in the style of all pages; `options` are Bokeh's.
 
@@ -51,20 +56,18 @@ def styled_figure(height_px: int, **options: Any) -> 'figure':
     """
     from bokeh.plotting import figure
 
-    settings: dict[str, Any] = {
-        'tools': _TOOLS,
-        'active_drag': 'xbox_zoom',
-        'active_scroll': None,
-        'window_axis': 'x',
-    }
     chart = figure(
         height=height_px,
+        tools=tools,
+        active_drag=active_drag,
+        active_scroll=None,
+        window_axis=window_axis,
         sizing_mode='stretch_width',
         background_fill_color=None,
         border_fill_color=None,
         outline_line_color=None,
         min_border=6,
-        **{**settings, **options},
+        **options,
     )
     chart.toolbar.logo = None
     chart.xgrid.grid_line_color = None
@@ -110,16 +113,25 @@ class PageCharts:
     def __init__(self) -> None:
         self._figures: dict[str, figure] = {}
 
-    def add(self, chart: Chart) -> Markup:
-        """Return the places of a chart's panels and its legend, for the page."""
+    def __bool__(self) -> bool:
+        """Whether the page has a chart."""
+        return bool(self._figures)
+
+    def add(self, chart: Chart, words: str = '') -> Markup:
+        """
+        Return the places of a chart's panels and its legend, for the page.
+
+        `words` say what it shows, for those who do not see it.
+        """
         places = []
         for drawn in draw_chart(chart):
             place = f'chart-{len(self._figures)}'
             self._figures[place] = drawn
             places.append(chart_place(place))
         several = ' several' if chart.columns > 1 else ''
+        spoken = Markup(' role="img" aria-label="{}"').format(words) if words else ''
         keys = [f'<span>{key_sample(key)}{escape(key.label)}</span>' for key in legend(chart)]
-        panels = f'<div class="panels{several}">{"".join(places)}</div>'
+        panels = f'<div class="panels{several}"{spoken}>{"".join(places)}</div>'
         return Markup(panels + (f'<p class="legend">{"".join(keys)}</p>' if keys else ''))
 
     def add_figure(self, place: str, drawn: 'figure') -> None:
@@ -151,7 +163,7 @@ def key_sample(key: Key) -> Markup:
     item = key.item
     if isinstance(item, Line):
         return sample_svg(item.look)
-    if isinstance(item, Points):
+    if isinstance(item, Marks):
         return mark_svg(item.mark, item.colour, filled=item.filled)
     if isinstance(item, Area):
         return patch_svg(item.colour, item.opacity)
@@ -159,41 +171,41 @@ def key_sample(key: Key) -> Markup:
 
 
 def _draw_panel(chart: Chart, panel: Panel, shared: 'dict[str, Range]') -> 'figure':
-    options: dict[str, Any] = {'title': panel.title} if panel.title else {}
-    axes = (('x', panel.x, chart.same_x), ('y', panel.y, chart.same_y))
-    for side, axis, same in axes:
-        options[f'{side}_axis_label'] = axis.label or None
-        options[f'{side}_axis_type'] = 'log' if axis.logarithmic else 'linear'
-        if same and side in shared:
-            options[f'{side}_range'] = shared[side]
-        elif axis.span:
-            options[f'{side}_range'] = _ends(axis.span, downward=side == 'y' and panel.downward)
+    """Return the figure of a panel; `shared` has the ranges of those before it by x and y."""
+    from bokeh.models import DataRange1d
+
+    down = panel.y.span[::-1] if panel.downward and panel.y.span else panel.y.span
     drawn = styled_figure(
         panel.height_px,
-        **{'tools': 'box_zoom,pan,reset,save', 'active_drag': None, 'window_axis': 'none'},
-        **options,
+        tools='box_zoom,pan,reset,save',
+        active_drag=None,
+        window_axis='none',
+        title=panel.title,
+        x_range=shared.get('x') or panel.x.span or DataRange1d(),
+        y_range=shared.get('y') or down or DataRange1d(),
+        x_axis_label=panel.x.label or None,
+        y_axis_label=panel.y.label or None,
+        x_axis_type='log' if panel.x.logarithmic else 'linear',
+        y_axis_type='log' if panel.y.logarithmic else 'linear',
     )
-    for side, axis, same in axes:
-        if same:
-            shared.setdefault(side, getattr(drawn, f'{side}_range'))
+    if chart.same_x:
+        shared['x'] = drawn.x_range
+    if chart.same_y:
+        shared['y'] = drawn.y_range
+    for axis, its in ((panel.x, drawn.xaxis), (panel.y, drawn.yaxis)):
         if axis.ticks is not None:
-            its = getattr(drawn, f'{side}axis')
             its.ticker = list(axis.ticks)
-            its.major_label_overrides = dict(axis.ticks)
+            its.major_label_overrides = dict(axis.ticks.items())
     for item in panel.items:
         _draw(drawn, item, panel)
     return drawn
-
-
-def _ends(span: tuple[float, float], *, downward: bool) -> tuple[float, float]:
-    return span[::-1] if downward else span
 
 
 def _draw(drawn: 'figure', item: Item, panel: Panel) -> None:
     """Draw one item of a panel, with what stands beside the pointer."""
     if isinstance(item, Line):
         mark = _draw_line(drawn, item)
-    elif isinstance(item, Points):
+    elif isinstance(item, Marks):
         mark = drawn.scatter(
             _single(item.x),
             _single(item.y),
@@ -217,7 +229,7 @@ def _draw(drawn: 'figure', item: Item, panel: Panel) -> None:
         _draw_cells(drawn, item)
         return
     hint = item.label
-    if isinstance(item, Points):
+    if isinstance(item, Marks):
         hint = item.hint or item.label
     if hint:
         names = (panel.x.label or 'x', '$snap_x'), (panel.y.label or 'y', '$snap_y')
@@ -225,18 +237,18 @@ def _draw(drawn: 'figure', item: Item, panel: Panel) -> None:
 
 
 def _draw_line(drawn: 'figure', item: Line) -> 'GlyphRenderer[Any]':
-    options: dict[str, Any] = {
-        'line_color': item.look.colour,
-        'line_dash': list(item.look.dash),
-        'line_width': item.width,
-        'line_alpha': item.opacity,
-    }
     across, up = _single(item.x), _single(item.y)
     if item.look.mark:
         drawn.scatter(across, up, marker=item.look.mark, size=7, color=item.look.colour)
-    if item.steps:
-        return drawn.step(across, up, mode='after', **options)
-    return drawn.line(across, up, **options)
+    draw = partial(drawn.step, mode='after') if item.steps else drawn.line
+    return draw(
+        across,
+        up,
+        line_color=item.look.colour,
+        line_dash=list(item.look.dash),
+        line_width=item.width,
+        line_alpha=item.opacity,
+    )
 
 
 def _draw_cells(drawn: 'figure', item: Cells) -> None:

@@ -16,7 +16,7 @@ from ddct_bringup.documents.palette import NEUTRAL, LineLook
 
 
 @dataclass(frozen=True)
-class Axis:
+class ChartAxis:
     """One axis of a panel."""
 
     label: str = ''
@@ -45,7 +45,7 @@ class Line:
 
 
 @dataclass(frozen=True)
-class Points:
+class Marks:
     """Marks at the points (x, y), each (n,)."""
 
     x: np.ndarray
@@ -84,7 +84,7 @@ class Cells:
     """Colour by name; the legend has the names that occur, in this order."""
 
 
-Item = Line | Points | Area | Cells
+Item = Line | Marks | Area | Cells
 
 
 @dataclass(frozen=True)
@@ -92,8 +92,8 @@ class Panel:
     """One coordinate system."""
 
     items: tuple[Item, ...]
-    x: Axis = field(default_factory=Axis)
-    y: Axis = field(default_factory=Axis)
+    x: ChartAxis = field(default_factory=ChartAxis)
+    y: ChartAxis = field(default_factory=ChartAxis)
     title: str = ''
     height_px: int = 260
     downward: bool = False

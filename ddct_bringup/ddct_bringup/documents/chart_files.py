@@ -11,17 +11,17 @@ from typing import TYPE_CHECKING, Any
 
 from ddct_bringup.documents.chart import (
     Area,
-    Axis,
     Cells,
     Chart,
+    ChartAxis,
     Item,
     Line,
+    Marks,
     Panel,
-    Points,
     legend,
 )
 from ddct_controllers.design.drawing.chart_style import chart_style, headed, save_chart
-from ddct_controllers.design.drawing.line_styles import dash_style
+from ddct_controllers.design.drawing.line_styles import LineStyle, dash_style
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -99,7 +99,7 @@ def _draw_panel(axes: 'Axes', panel: Panel) -> None:
         axes.invert_yaxis()
 
 
-def _set_axis(which: Any, axis: Axis, set_scale: Any, set_limits: Any) -> None:
+def _set_axis(which: Any, axis: ChartAxis, set_scale: Any, set_limits: Any) -> None:
     which.set_label_text(axis.label)
     if axis.logarithmic:
         set_scale('log')
@@ -111,12 +111,12 @@ def _set_axis(which: Any, axis: Axis, set_scale: Any, set_limits: Any) -> None:
 
 def _draw(axes: 'Axes', item: Item) -> None:
     if isinstance(item, Line):
-        style = _line_style(item)
-        if item.steps:
-            style['drawstyle'] = 'steps-post'
-        axes.plot(item.x, item.y, label=item.label or None, **style)
-    elif isinstance(item, Points):
-        axes.plot(item.x, item.y, label=item.label or None, **_mark_style(item))
+        (drawn,) = axes.plot(item.x, item.y, label=item.label or None, **_line_style(item))
+        drawn.set_drawstyle('steps-post' if item.steps else 'default')
+        drawn.set_alpha(item.opacity)
+    elif isinstance(item, Marks):
+        (drawn,) = axes.plot(item.x, item.y, label=item.label or None, **_mark_style(item))
+        drawn.set_alpha(item.opacity)
     elif isinstance(item, Area):
         axes.fill_between(
             item.x, item.low, item.high, color=item.colour, alpha=item.opacity, linewidth=0.0
@@ -125,27 +125,25 @@ def _draw(axes: 'Axes', item: Item) -> None:
         _draw_cells(axes, item)
 
 
-def _line_style(item: Line) -> dict[str, Any]:
-    style: dict[str, Any] = {
+def _line_style(item: Line) -> LineStyle:
+    style: LineStyle = {
         'color': item.look.colour,
         'linestyle': dash_style(item.look.dash),
         'linewidth': 0.8 * item.width,
-        'alpha': item.opacity,
     }
     if item.look.mark:
         style |= {'marker': _MARKS[item.look.mark], 'markersize': 6.0, 'markevery': (0.06, 0.17)}
     return style
 
 
-def _mark_style(item: Points) -> dict[str, Any]:
+def _mark_style(item: Marks) -> LineStyle:
     return {
         'linestyle': 'none',
         'marker': _MARKS[item.mark],
         'color': item.colour,
         'markerfacecolor': item.colour if item.filled else 'none',
         'markersize': 0.8 * item.size,
-        'alpha': item.opacity,
-        'zorder': 5,
+        'zorder': 5.0,
     }
 
 
@@ -173,9 +171,13 @@ def _handle(item: Item) -> 'Artist':
     from matplotlib.patches import Patch
 
     if isinstance(item, Line):
-        return Line2D([], [], **{**_line_style(item), 'markevery': None})
-    if isinstance(item, Points):
-        return Line2D([], [], **_mark_style(item))
+        line = Line2D([], [])
+        line.set(**{**_line_style(item), 'markevery': None})
+        return line
+    if isinstance(item, Marks):
+        line = Line2D([], [])
+        line.set(**_mark_style(item))
+        return line
     if isinstance(item, Area):
         return Patch(facecolor=item.colour, alpha=item.opacity)
     return Patch(facecolor=next(iter(item.colours.values())), edgecolor='#7f7f7f')

@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from ddct_bringup.documents.chart import Chart
 from ddct_plant.program.table import PURE, Weight, text_or_dash
 
 
@@ -115,8 +116,8 @@ class Figure:
     """Chart of a page; the terminal has the numbers in tables."""
 
     title: str
-    draw: Callable[[], Any]
-    """Function that returns the chart: a model of Bokeh, the bytes of an SVG, or Markup."""
+    draw: Callable[[], Chart]
+    """Function that returns the chart, computed for a page alone."""
     words: str = ''
     """What it shows, for those who do not see it."""
 

@@ -3,7 +3,6 @@
 """Documents as pages: one HTML file without external resources, for light and dark, and paper."""
 
 import re
-from base64 import b64encode
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
@@ -11,10 +10,12 @@ from typing import Any
 
 from markupsafe import Markup, escape
 
-from ddct_bringup.documents.document import Bar, Block, Cell, Column, Document, Figure, Table
+from ddct_bringup.documents.bokeh_charts import PageCharts, library
+from ddct_bringup.documents.document import Bar, Block, Cell, Column, Document, Table
 from ddct_bringup.documents.page_parts import (
     DOCUMENTS,
     MARKER,
+    json_data,
     page_part,
     page_template,
     symbols,
@@ -30,26 +31,19 @@ def html_page(document: Document) -> str:
     """Return the HTML of a document."""
     return page_template(DOCUMENTS, 'page.html.j2').render(
         marker=Markup(MARKER),
-        style=page_part(DOCUMENTS, 'page.css'),
-        script=page_part(DOCUMENTS, 'page.js'),
+        style=page_part(DOCUMENTS, 'page.css') + page_part(DOCUMENTS, 'charts.css'),
+        script=page_part(DOCUMENTS, 'page.js') + page_part(DOCUMENTS, 'charts.js'),
+        charts=PageCharts(),
+        library=library,
+        json_data=json_data,
         document=document,
         kind_of=_kind_of,
         views=_TableView.of,
-        drawn=_drawn,
     )
 
 
 def _kind_of(block: Block) -> str:
     return type(block).__name__
-
-
-def _drawn(figure: Figure) -> Markup:
-    """Return the element of a chart."""
-    chart = figure.draw()
-    if isinstance(chart, Markup):
-        return chart
-    source = f'data:image/svg+xml;base64,{b64encode(chart).decode()}'
-    return Markup('<img class="drawn" src="{}" alt="{}">').format(source, figure.words)
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddct_bringup.documents.chart import Area, Axis, Chart, Item, Line, Panel, Points
+from ddct_bringup.documents.chart import Area, Chart, ChartAxis, Item, Line, Marks, Panel
 from ddct_bringup.documents.palette import NEUTRAL, LineLook, looks
 from ddct_bringup.floor.front import ControllerRow
 from ddct_bringup.floor.metric_units import METRICS
@@ -30,7 +30,7 @@ def front_chart(
     """
     names = dict.fromkeys(row.controller for row in rows)
     looks_by_name = dict(zip(names, looks(len(names)), strict=True))
-    across = Axis(f'time from {counted_from} to the lock, s')
+    across = ChartAxis(f'time from {counted_from} to the lock, s')
     panels = [
         _panel(
             metric,
@@ -63,7 +63,7 @@ def _marks(rows: Sequence[ControllerRow], metric: str) -> list[_Mark]:
 
 def _panel(
     metric: str,
-    across: Axis,
+    across: ChartAxis,
     floors: Sequence[Floor],
     marks: Sequence[_Mark],
     looks_by_name: dict[str, LineLook],
@@ -81,12 +81,12 @@ def _panel(
     items: list[Item] = [
         Area(times, np.zeros(len(times)), least, 'no run can be here'),
         Line(times, least, LineLook(NEUTRAL), 'least, proven'),
-        Points(times, attained, NEUTRAL, 'attained by a run', filled=False, size=6.0),
+        Marks(times, attained, NEUTRAL, 'attained by a run', filled=False, size=6.0),
     ]
     for mark in marks:
         look = looks_by_name[mark.controller]
         items.append(
-            Points(
+            Marks(
                 np.array([mark.lock_time_s]),
                 np.array([min(mark.value, ceiling)]),
                 look.colour,
@@ -98,4 +98,4 @@ def _panel(
             )
         )
     label = f'{metric.replace("_", " ")}, {METRICS[metric]}'
-    return Panel(tuple(items), across, Axis(label, (0.0, ceiling)))
+    return Panel(tuple(items), across, ChartAxis(label, (0.0, ceiling)))

@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ddct_bringup.documents.chart import Axis as ChartAxis
-from ddct_bringup.documents.chart import Cells
+from ddct_bringup.documents.chart import Cells, ChartAxis
 from ddct_bringup.sweep.axis import Axis, value_text
 from ddct_bringup.verdict.state import (
     ADDED,

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ddct_bringup.campaign.rows import ScoredRow
-from ddct_bringup.documents.chart import Axis, Chart, Item, Line, Panel, Points
+from ddct_bringup.documents.chart import Chart, ChartAxis, Item, Line, Marks, Panel
 from ddct_bringup.documents.page_parts import unit_text
 from ddct_bringup.documents.palette import NEUTRAL, LineLook, looks
 from ddct_bringup.sweep.state_map import chart_axis, edges_of, places_of, state_cells
@@ -67,7 +67,7 @@ def _values(runs: Sequence[ScoredRow], figure: Quantity) -> np.ndarray:
 
 def _metric_panel(
     figure: Quantity,
-    across: Axis,
+    across: ChartAxis,
     places: np.ndarray,
     names: Sequence[str],
     values: np.ndarray,
@@ -85,13 +85,13 @@ def _metric_panel(
     low, high = _range(values[engaged], values)
     nothing = np.empty(0)
     items: list[Item] = [
-        Points(nothing, nothing, NEUTRAL, OTHER, 'x', size=9.0),
-        Points(nothing, nothing, NEUTRAL, NO_VALUE, filled=False, size=9.0),
+        Marks(nothing, nothing, NEUTRAL, OTHER, 'x', size=9.0),
+        Marks(nothing, nothing, NEUTRAL, NO_VALUE, filled=False, size=9.0),
     ]
     for name, look, each, good in zip(names, looks(len(names)), values, engaged, strict=True):
         items += _of_controller(name, look, places, each, good, (low, high), joined=joined)
     label = ', '.join(filter(None, (figure.symbol, unit_text(figure.unit))))
-    return Panel(tuple(items), across, Axis(label, (low, high)), height_px=_PANEL_PX)
+    return Panel(tuple(items), across, ChartAxis(label, (low, high)), height_px=_PANEL_PX)
 
 
 def _of_controller(
@@ -112,14 +112,14 @@ def _of_controller(
     else:
         apart = places[:, np.newaxis] + np.array([-_HALF_LINE, 0.0, _HALF_LINE, np.nan])
         yield Line(apart.ravel(), np.repeat(shown, apart.shape[1]), look, name)
-    yield Points(places, shown, look.colour, size=5.0, mark=look.mark or 'circle')
+    yield Marks(places, shown, look.colour, size=5.0, mark=look.mark or 'circle')
     at = np.clip(np.nan_to_num(values, nan=span[0]), *span)
     for chosen, meaning, mark in (
         (~engaged, OTHER, 'x'),
         (engaged & ~np.isfinite(values), NO_VALUE, 'circle'),
     ):
         if chosen.any():
-            yield Points(
+            yield Marks(
                 places[chosen],
                 at[chosen],
                 look.colour,
@@ -130,14 +130,18 @@ def _of_controller(
             )
 
 
-def _lanes(across: Axis, places: np.ndarray, names: Sequence[str], states: np.ndarray) -> Panel:
+def _lanes(
+    across: ChartAxis, places: np.ndarray, names: Sequence[str], states: np.ndarray
+) -> Panel:
     """Return the (controllers, places) states, a lane per controller, the first on top."""
     rows = np.arange(len(names), dtype=float)
     cells = state_cells((edges_of(places), edges_of(rows)), states.tolist())
     ticks = dict(zip(rows.tolist(), names, strict=True))
     span = (-0.5, len(names) - 0.5)
     height = _LANES_PX + _LANE_PX * len(names)
-    return Panel((cells,), across, Axis('state', span, ticks=ticks), '', height, downward=True)
+    return Panel(
+        (cells,), across, ChartAxis('state', span, ticks=ticks), '', height, downward=True
+    )
 
 
 def _maps(sweep: Sweep, names: Sequence[str], states: np.ndarray) -> tuple[Panel, ...]:

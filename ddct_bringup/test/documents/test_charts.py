@@ -11,12 +11,12 @@ import pytest
 from ddct_bringup.documents.bokeh_charts import PageCharts, draw_chart
 from ddct_bringup.documents.chart import (
     Area,
-    Axis,
     Cells,
     Chart,
+    ChartAxis,
     Line,
+    Marks,
     Panel,
-    Points,
     legend,
 )
 from ddct_bringup.documents.chart_files import matplotlib_figure, write_chart
@@ -32,10 +32,10 @@ CHART = Chart(
                 Area(TIMES, np.zeros(3), TIMES, 'no run'),
                 Line(TIMES, TIMES, FIRST, 'pi'),
                 Line(TIMES, 2.0 * TIMES, SECOND, 'ls8', steps=True),
-                Points(TIMES, TIMES, NEUTRAL, 'failed', 'x', filled=False),
+                Marks(TIMES, TIMES, NEUTRAL, 'failed', 'x', filled=False),
             ),
-            Axis('time, s', (0.0, 2.0)),
-            Axis('A_x, m/s²'),
+            ChartAxis('time, s', (0.0, 2.0)),
+            ChartAxis('A_x, m/s²'),
         ),
         Panel(
             (
@@ -47,8 +47,8 @@ CHART = Chart(
                 ),
                 Line(TIMES, TIMES, FIRST, 'pi'),
             ),
-            Axis('time, s'),
-            Axis('run', (-0.5, 1.5), ticks={0.0: 'first', 1.0: 'second'}),
+            ChartAxis('time, s'),
+            ChartAxis('run', (-0.5, 1.5), ticks={0.0: 'first', 1.0: 'second'}),
             downward=True,
         ),
     ),
@@ -96,7 +96,7 @@ def test_the_same_chart_is_the_same_document():
 
 def test_a_logarithmic_axis_and_a_title_come_on_the_figure():
     panel = Panel(
-        (Line(TIMES + 1.0, TIMES, FIRST, 'pi'),), Axis('gain', logarithmic=True), title='pi'
+        (Line(TIMES + 1.0, TIMES, FIRST, 'pi'),), ChartAxis('gain', logarithmic=True), title='pi'
     )
     (drawn,) = draw_chart(Chart('gains', (panel,)))
     assert type(drawn.x_scale).__name__ == 'LogScale'

@@ -5,8 +5,9 @@
 import io
 import re
 
-from markupsafe import Markup
+import numpy as np
 
+from ddct_bringup.documents.chart import Chart, Line, Panel
 from ddct_bringup.documents.document import (
     Bar,
     Cell,
@@ -21,6 +22,7 @@ from ddct_bringup.documents.document import (
     given,
 )
 from ddct_bringup.documents.page import html_page
+from ddct_bringup.documents.palette import looks
 from ddct_bringup.documents.terminal import print_document
 from ddct_plant.program.table import Weight
 
@@ -35,7 +37,7 @@ ROWS = (
 )
 
 
-def never() -> Markup:
+def never() -> Chart:
     raise AssertionError('the terminal draws no figure')
 
 
@@ -76,7 +78,8 @@ def test_the_terminal_has_the_tables_with_reasons_remarks_and_commands() -> None
 
 
 def test_the_page_has_every_number_and_reason_and_escapes_what_it_shows() -> None:
-    page = html_page(document(lambda: Markup('<svg id="drawn"></svg>')))
+    line = Line(np.arange(3.0), np.arange(3.0), looks(1)[0], '<pi>')
+    page = html_page(document(lambda: Chart('t_a', (Panel((line,)),))))
     assert '<h1>Test of &lt;one&gt;</h1>' in page
     assert '<a href="#times">Times</a>' in page
     assert '<data value="1.25">1.25</data>' in page
@@ -84,7 +87,9 @@ def test_the_page_has_every_number_and_reason_and_escapes_what_it_shows() -> Non
     assert 'mpc_&lt;3&gt;' in page
     assert 't<sub>a</sub>: no run engaged' in page
     assert 'class="range" style="left:60.0%;right:1.0%"' in page
-    assert page.count('<svg id="drawn">') == 1
+    assert page.count('<div class="chart" id="chart-0">') == 1
+    assert '&lt;pi&gt;</span>' in page
+    assert 'aria-label="times"' in page
     assert '<th scope="colgroup" colspan="2" class="of">held out</th>' in page
     assert '<details><summary>More</summary>' in page
     assert '<code>ddct run --x &#34;a b&#34;</code>' in page

@@ -7,7 +7,7 @@ import pytest
 from made_scores import made_scores
 
 from ddct_bringup.campaign.rows import ScoredRow
-from ddct_bringup.documents.chart import Cells, Chart, Line, Panel, Points, legend
+from ddct_bringup.documents.chart import Cells, Chart, Line, Marks, Panel, legend
 from ddct_bringup.documents.palette import looks
 from ddct_bringup.metrics.catalogue import TABLE_5_1
 from ddct_bringup.run.run_base import RunBase
@@ -42,12 +42,12 @@ def panel():
     return drawn(['wear_gain=0.6:1.4:5'], ['pi'], runs).panels[0]
 
 
-def marked(panel: Panel, meaning: str) -> Points:
+def marked(panel: Panel, meaning: str) -> Marks:
     """Return the marks of the runs with a meaning."""
     (points,) = [
         each
         for each in panel.items
-        if isinstance(each, Points) and each.hint.endswith(meaning) and len(each.x)
+        if isinstance(each, Marks) and each.hint.endswith(meaning) and len(each.x)
     ]
     return points
 

@@ -70,8 +70,13 @@ def draw_over_time(
     lines: Mapping[str, tuple[np.ndarray, np.ndarray]],
     styles: Mapping[str, LineStyle],
 ) -> None:
-    """Draw (time, values) by name; lines without a style in `styles` get the next free one."""
-    others = line_styles()
+    """
+    Draw (time, values) by name; lines without a style in `styles` get the next free one.
+
+    None of these has the dash of a line in `styles`.
+    """
+    taken = [style.get('linestyle', '-') for style in styles.values()]
+    others = (style for style in line_styles() if style['linestyle'] not in taken)
     for name, (time, values) in lines.items():
         axes.plot(time, values, label=name, **(styles.get(name) or next(others)))
     label_time_axis(axes, quantity, range_s)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The document of a tuning: the best trial, the front, what decides, convergence, origin."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import partial
 from itertools import combinations
 from typing import TYPE_CHECKING
@@ -24,14 +24,12 @@ from ddct_bringup.documents.document import (
     given,
 )
 from ddct_bringup.tuning.report import texts
+from ddct_bringup.tuning.report.charts import front_chart, progress_chart, slices_chart
 from ddct_bringup.tuning.report.commands import PageCommands
-from ddct_bringup.tuning.report.figures import front_figure, progress_figure, slices_figure
 from ddct_bringup.tuning.result import Figures, FrontEntry, TuningResult
-from ddct_controllers.design.drawing.chart_style import chart_bytes, chart_style
 from ddct_plant.program.table import Weight
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure as MatplotlibFigure
     from optuna import Study
 
 _NAME = Weight.IDENTIFYING
@@ -148,7 +146,7 @@ def _front(result: TuningResult, study: 'Study | None') -> Section:
     figures: list[Block] = [
         Figure(
             f'{goals[0].title} and {goals[1].title}',
-            partial(_svg, front_figure, result, study, *at),
+            partial(front_chart, result, study, *at),
             'Trials over two objectives; the table below has the values of the front',
         )
         for at in combinations(range(len(result.objectives)), 2)
@@ -169,7 +167,7 @@ def _decides(result: TuningResult, study: 'Study | None') -> Section:
     figures: list[Block] = [
         Figure(
             goal.title,
-            partial(_svg, slices_figure, study, goal, place),
+            partial(slices_chart, result, study, place),
             f'{goal.title} of all trials over each parameter; grey break a constraint',
         )
         for place, goal in enumerate(result.objectives)
@@ -181,8 +179,8 @@ def _decides(result: TuningResult, study: 'Study | None') -> Section:
             effects_table(result),
             *figures,
             Note(
-                'Grey: trials that break a constraint, over the runs until they ended. The '
-                'darker, the later. The highest tenth is not drawn.',
+                'Trials that break a constraint count the runs until they ended. The highest '
+                'tenth is not drawn.',
                 page_only=True,
             ),
             texts.terms('importance'),
@@ -211,7 +209,7 @@ def _convergence(result: TuningResult, study: 'Study | None') -> Section | None:
         return None
     figure = Figure(
         '',
-        partial(_svg, progress_figure, result, study),
+        partial(progress_chart, result, study),
         'What the trials have reached, over their numbers',
     )
     volume = Note(
@@ -259,17 +257,6 @@ def _origin(
         key='origin',
         page_only=True,
     )
-
-
-def _svg(draw: 'Callable[..., MatplotlibFigure]', *of: object) -> bytes:
-    """Return a drawn figure as SVG, and close it."""
-    from matplotlib import pyplot
-
-    with chart_style():
-        figure = draw(*of)
-        drawn = chart_bytes(figure, 'svg')
-    pyplot.close(figure)
-    return drawn
 
 
 def _label(result: TuningResult, entry: FrontEntry) -> str:

@@ -1,8 +1,7 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Figures of a tuning have each trial at its values, and room around them."""
+"""Charts of a tuning have each trial at its values, and room around them."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -11,8 +10,9 @@ import pyarrow as pa
 import pytest
 from small_tuning import tuning
 
+from ddct_bringup.documents.chart import Chart, Line, Marks, legend
 from ddct_bringup.evaluation.share import Share
-from ddct_bringup.tuning.report.figures import front_figure, progress_figure, slices_figure
+from ddct_bringup.tuning.report.charts import front_chart, progress_chart, slices_chart
 from ddct_bringup.tuning.result import (
     Figures,
     FrontEntry,
@@ -22,7 +22,6 @@ from ddct_bringup.tuning.result import (
 )
 from ddct_bringup.tuning.study import TuningStudy
 from ddct_bringup.tuning.trial import Trial
-from ddct_controllers.design.drawing.chart_style import chart_style
 
 pytest.importorskip('optuna', reason='an extra')
 SPEC = tuning().spec
@@ -65,15 +64,6 @@ RESULT = TuningResult(
 )
 
 
-@pytest.fixture(autouse=True)
-def in_the_style_of_charts() -> Iterator[None]:
-    from matplotlib import pyplot
-
-    with chart_style():
-        yield
-    pyplot.close('all')
-
-
 @pytest.fixture(scope='module')
 def study() -> Any:
     """Return the study of the trials."""
@@ -86,47 +76,56 @@ def study() -> Any:
     return made.study
 
 
-def scattered(axes: Any) -> set[tuple[float, float]]:
+def scattered(chart: Chart, panel: int = 0) -> set[tuple[float, float]]:
     """Return the places of all trials in a panel."""
     return {
         (float(x), float(y))
-        for each in axes.collections
-        for x, y in np.ma.filled(each.get_offsets(), np.nan)
+        for each in chart.panels[panel].items
+        if isinstance(each, Marks)
+        for x, y in zip(each.x, each.y, strict=True)
     }
 
 
 def test_each_trial_is_at_its_two_objectives(study: Any) -> None:
-    assert scattered(front_figure(RESULT, study, 0, 1).axes[0]) >= set(VALUES)
+    assert scattered(front_chart(RESULT, study, 0, 1)) >= set(VALUES)
     turned = {(deviation, time) for time, deviation in VALUES}
-    assert scattered(front_figure(RESULT, study, 1, 0).axes[0]) >= turned
+    assert scattered(front_chart(RESULT, study, 1, 0)) >= turned
 
 
 @pytest.mark.parametrize('before', [None, FRONT[0]], ids=['none', 'a trial'])
 def test_the_legend_names_the_values_of_before_only_where_there_are_some(
     study: Any, before: Any
 ) -> None:
-    (legend,) = front_figure(replace(RESULT, before=before), study, 0, 1).legends
-    named = 'before' in [text.get_text() for text in legend.get_texts()]
-    assert named == (before is not None)
+    chart = front_chart(replace(RESULT, before=before), study, 0, 1)
+    assert ('before' in [key.label for key in legend(chart)]) == (before is not None)
 
 
 @pytest.mark.parametrize(('goal', 'place'), [(TIME, 0), (DEVIATION, 1)], ids=['time', 'std'])
 def test_the_panel_of_a_parameter_has_all_but_the_highest_tenth_of_the_trials(
     study: Any, goal: Any, place: int
 ) -> None:
-    panels = slices_figure(study, goal, place).axes[:2]
-    assert [panel.get_xlabel() for panel in panels] == ['integral_gain', 'proportional_gain']
+    chart = slices_chart(RESULT, study, place)
+    assert [panel.x.label for panel in chart.panels] == ['integral_gain', 'proportional_gain']
+    assert chart.title == goal.title
     heights = [each[place] for each in VALUES]
     gains = [each['proportional_gain'] for each in GAINS]
-    assert scattered(panels[1]) >= set(zip(gains, heights, strict=True))
-    low, high = panels[0].get_ylim()
+    assert scattered(chart, 1) >= set(zip(gains, heights, strict=True))
+    span = chart.panels[0].y.span
+    assert span is not None
+    low, high = span
     assert low < min(heights)
     assert np.quantile(heights, 0.9) < high < max(heights)
 
 
 def test_progress_is_the_volume_between_the_front_and_the_worst_values(study: Any) -> None:
-    axes = progress_figure(RESULT, study).axes[0]
-    (line,) = axes.get_lines()
-    volumes: Any = line.get_ydata()
+    (line,) = progress_chart(RESULT, study).panels[0].items
+    assert isinstance(line, Line)
     # Of (8, 40): 7 x 10, then the part of each further trial that the earlier ones lack.
-    np.testing.assert_allclose(volumes, [70.0, 70.0 + 60.0, 130.0 + 40.0, 170.0])
+    np.testing.assert_allclose(line.y, [70.0, 70.0 + 60.0, 130.0 + 40.0, 170.0])
+
+
+def test_progress_of_one_objective_is_its_best_value_so_far(study: Any) -> None:
+    alone = replace(RESULT, objectives=[TIME])
+    best = progress_chart(alone, study).panels[0].items[-1]
+    assert isinstance(best, Line)
+    assert (best.x.tolist(), best.y.tolist()) == ([0.0, 1.0, 2.0, 3.0], [1.0] * 4)
