@@ -22,6 +22,8 @@ from ddct_bringup.identification.identification_report import IdentificationDocu
 from ddct_bringup.manifest.manifest import BENCHMARK, CAMPAIGN, RUNS, TUNING, Kind, Manifest
 from ddct_bringup.manifest.manifest import SCHEMA_VERSION as MANIFEST_VERSION
 from ddct_bringup.manifest.runs import RunsPlan
+from ddct_bringup.reproduction.numbers.gate import NumbersDocument
+from ddct_bringup.reproduction.studies.study import WrittenStudy
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.document import ScoresDocument
 from ddct_bringup.sweep.sweep import SCHEMA_VERSION as SWEEP_VERSION
@@ -36,6 +38,7 @@ from ddct_controllers.workflows.plant_on_paper import PlantOnPaper
 from ddct_plant.files.json_records import write_json
 from ddct_plant.files.json_schema import Schema, json_schema
 from ddct_plant.program.command_line import ProgramParser, run_program
+from ddct_plant.program.table import WrittenTable
 
 PROGRAM = 'python -m ddct_bringup.schemas'
 SUFFIX = '.schema.json'
@@ -43,10 +46,11 @@ SUFFIX = '.schema.json'
 
 @dataclass(frozen=True)
 class Document:
-    """JSON that programs write: what it is, and the dataclass that describes it."""
+    """JSON that programs write: what it is, and the type that describes it."""
 
     title: str
-    kind: type
+    kind: Any
+    """Dataclass, or a mapping of them by name."""
     others: Mapping[str, Any] = field(default_factory=dict)
     """Types of keys that are narrower in this document than in the dataclass."""
 
@@ -91,6 +95,9 @@ DOCUMENTS: Mapping[str, Document] = {
     'identify': Document('--json of identify', IdentificationDocument),
     'identify_log': Document('--json of identify --from', LogFitDocument),
     'check_controller': Document('--json of check-controller', CheckReport),
+    'numbers': Document('--json of reproduce numbers', NumbersDocument),
+    'studies': Document('--json of reproduce studies', Mapping[str, WrittenStudy]),
+    'benchmark_packaged': Document('--json of benchmark --packaged', Mapping[str, WrittenTable]),
     'plant': Document('--json of design plant', PlantOnPaper),
 }
 """Documents by the name of their schema."""

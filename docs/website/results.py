@@ -8,29 +8,28 @@ NAME of FILE.json. `make site` makes the files. A picture NAME.png beside them g
 table.
 """
 
-import json
 import re
 import shutil
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
-from typing import TypedDict
+from typing import Any
 
 from generator.markdown import as_markdown
 
+from ddct_bringup.reproduction.numbers.gate import NumbersDocument
+from ddct_bringup.reproduction.studies.study import WrittenStudy
 from ddct_plant.base.errors import DdctError
-from ddct_plant.program.table import Table
+from ddct_plant.files.json_records import read_json
+from ddct_plant.program.table import Table, WrittenTable
 
-FILES = ('numbers', 'benchmark', 'studies')
-"""Names of the files, each with `.json`."""
+FILES: Mapping[str, Any] = {
+    'numbers': NumbersDocument,
+    'benchmark': Mapping[str, WrittenTable],
+    'studies': Mapping[str, WrittenStudy],
+}
+"""Types of the files, by their name without `.json`."""
 MARK = re.compile(r'^<!-- table: (\w+) (\w+) -->$', re.MULTILINE)
-
-
-class WrittenTable(TypedDict):
-    """A table as `Table.as_dict` writes it."""
-
-    title: str
-    headers: list[str]
-    rows: list[dict[str, str]]
 
 
 def with_results(text: str, results: Path, pictures: Path) -> str:
@@ -44,27 +43,24 @@ def with_results(text: str, results: Path, pictures: Path) -> str:
     def shown(match: re.Match[str]) -> str:
         file, name = match[1], match[2]
         try:
-            table = _tables(results / f'{file}.json')[name]
+            table = _tables(file, results)[name]
         except KeyError:
             raise DdctError(f'{results / file}.json has no table {name}: make site') from None
-        rows = [[row[header] for header in table['headers']] for row in table['rows']]
-        written = as_markdown(Table(table['title'], table['headers'], rows))
+        rows = [[row[header] for header in table.headers] for row in table.rows]
+        written = as_markdown(Table(table.title, table.headers, rows))
         picture = results / f'{name}.png'
         if not picture.is_file():
             return written
         pictures.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(picture, pictures / picture.name)
-        return f'![{table["title"]}]({pictures.name}/{picture.name})\n\n{written}'
+        return f'![{table.title}]({pictures.name}/{picture.name})\n\n{written}'
 
     return MARK.sub(shown, text)
 
 
 @cache
-def _tables(file: Path) -> dict[str, WrittenTable]:
-    """Return the tables of a file by name; `numbers.json` has them beside the numbers."""
-    try:
-        content = json.loads(file.read_text(encoding='utf-8'))
-    except OSError as error:
-        raise DdctError(f'{file} cannot be read ({error.strerror}): make site') from error
-    tables: dict[str, WrittenTable] = content.get('tables', content)
-    return tables
+def _tables(file: str, folder: Path) -> Mapping[str, WrittenTable]:
+    """Return the tables of a file by name; raise DdctError where it cannot be read."""
+    content: Any = read_json(FILES[file], folder / f'{file}.json', advice='make site')
+    tables = content.tables if file == 'numbers' else content
+    return {name: each.table if file == 'studies' else each for name, each in tables.items()}

@@ -3,7 +3,6 @@
 """The documentation site: every link arrives, it opens offline, and equations are drawn."""
 
 import importlib.util
-import json
 import shutil
 from pathlib import Path
 
@@ -13,8 +12,10 @@ from website.results import FILES, MARK, with_results
 from website.staging import ROOT, staged
 
 from ddct_bringup.reproduction.studies.command import STUDIES
+from ddct_bringup.reproduction.studies.study import WrittenStudy
 from ddct_bringup.schemas import DOCUMENTS
 from ddct_plant.base.errors import DdctError
+from ddct_plant.files.json_records import write_json
 from ddct_plant.program.table import Table
 
 PAGES_OF_RESULTS = sorted(
@@ -43,9 +44,11 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
             name: Table(f'Title of {name}', ('key', 'value'), [('a | b', f'{file} {name}')])
             for name in names
         }
-        written = {name: table.as_dict() for name, table in tables.items()}
+        written: object = {name: table.written for name, table in tables.items()}
+        if file == 'studies':
+            written = {name: WrittenStudy(table.written, ()) for name, table in tables.items()}
         document = {'numbers': [], 'tables': written} if file == 'numbers' else written
-        (folder / f'{file}.json').write_text(json.dumps(document), encoding='utf-8')
+        write_json(str(folder / f'{file}.json'), document)
     picture = ROOT / 'docs' / 'images' / 'limit_launch.png'
     shutil.copy(picture, folder / 'engagements_launch.png')
     return folder

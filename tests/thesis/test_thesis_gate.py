@@ -9,11 +9,12 @@ from pathlib import Path
 
 import pytest
 import yaml
+from by_schema import require_schema
 
 from ddct_bringup.programs import reproduce
 from ddct_bringup.reproduction.numbers import command
 from ddct_bringup.reproduction.numbers.command import SOURCES, compute
-from ddct_bringup.reproduction.numbers.gate import GateRow, judge
+from ddct_bringup.reproduction.numbers.gate import GateRow, NumbersDocument, judge
 from ddct_bringup.reproduction.numbers.gate_tables import page_tables
 from ddct_bringup.reproduction.numbers.number_files import thesis_numbers
 from ddct_bringup.reproduction.numbers.thesis_number import VERDICTS
@@ -21,6 +22,7 @@ from ddct_bringup.thesis.table_5_1 import THESIS_TABLE
 from ddct_controllers.mpc.costs import TABLE_4_1, TwoInputCost
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.files.json_records import to_json
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.models.printed import ACTUATOR, CLUTCH_TO_SLIP, LOAD_TO_SLIP
 
@@ -167,10 +169,9 @@ def test_program_writes_every_number_as_json_alone(
 ) -> None:
     assert reproduce.main(['numbers', '--json', '-']) == 0
     content = json.loads(capsys.readouterr().out)
-    assert content == {
-        'numbers': [row.as_dict() for row in rows],
-        'tables': {name: table.as_dict() for name, table in page_tables(rows).items()},
-    }
+    tables = {name: table.written for name, table in page_tables(rows).items()}
+    require_schema('numbers', content)
+    assert content == to_json(NumbersDocument([row.entry for row in rows], tables))
     keys = [
         *('section', 'item', 'printed', 'computed', 'unit'),
         *('tolerance', 'verdict', 'hit', 'group', 'reason'),

@@ -62,7 +62,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     }
     print_tables(tables.values())
     if options.json:
-        write_json(options.json, {name: table.as_dict() for name, table in tables.items()})
+        write_json(options.json, {name: table.written for name, table in tables.items()})
     if not options.set:
         require_packaged(best, base)
     return 0

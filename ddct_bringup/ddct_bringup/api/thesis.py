@@ -18,6 +18,7 @@ from ddct_bringup.reproduction.values.orders import WORN
 from ddct_bringup.thesis.table_5_1 import PREDICTED, is_thesis_run, thesis_row
 from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 from ddct_plant.base.options import require_known
+from ddct_plant.files.json_records import to_json
 
 THESIS = 'thesis.'
 """Prefix of the column of a printed value."""
@@ -48,7 +49,7 @@ def thesis_numbers() -> ThesisNumbers:
     """
     rows = judge(listed_numbers(), compute(SOURCES))
     require_all(rows)
-    table = pandas.DataFrame([{**row.as_dict(), 'outcome': row.outcome} for row in rows])
+    table = pandas.DataFrame([{**to_json(row.entry), 'outcome': row.outcome} for row in rows])
     counts = {
         'entries': table['outcome'].value_counts(),
         'facts': pandas.Series(dict(count_facts(rows))),

@@ -139,7 +139,7 @@ def _show_packaged(options: argparse.Namespace) -> int:
     ):
         raise ParameterError('--packaged runs nothing: give it alone, or with --json')
     tables = shell.packaged_tables()
-    document = {name: table.as_dict() for name, table in tables.items()}
+    document = {name: table.written for name, table in tables.items()}
 
     def show() -> None:
         shell.print_tables(tables.values())

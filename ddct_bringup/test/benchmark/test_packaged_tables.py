@@ -9,12 +9,14 @@ from contextlib import redirect_stdout
 from dataclasses import replace
 
 import pytest
+from by_schema import require_schema
 from small_benchmark import PACKAGED, shown_runs, use_small_release
 
 from ddct_bringup.benchmark.report.packaged import packaged_tables
 from ddct_bringup.benchmark.report.rules import left_open, states_that_count
 from ddct_bringup.programs import benchmark
 from ddct_bringup.verdict.limits import packaged_limits
+from ddct_plant.files.json_records import to_json
 from ddct_plant.program import printed_table
 
 
@@ -87,7 +89,8 @@ def test_the_program_writes_the_tables(capsys: pytest.CaptureFixture[str]) -> No
     tables = packaged_tables()
     assert benchmark.main(['--packaged', '--json', '-']) == 0
     written = json.loads(capsys.readouterr().out)
-    assert written == {name: table.as_dict() for name, table in tables.items()}
+    require_schema('benchmark_packaged', written)
+    assert written == to_json({name: table.written for name, table in tables.items()})
     for name, table in tables.items():
         assert [list(row.values()) for row in written[name]['rows']] == [*map(list, table.rows)]
 

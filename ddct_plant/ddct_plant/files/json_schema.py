@@ -32,16 +32,16 @@ Schema = dict[str, Any]
 _NONE: Mapping[str, Any] = {}
 
 
-def json_schema(kind: type, title: str, others: Mapping[str, Any] = _NONE) -> Schema:
+def json_schema(kind: Any, title: str, others: Mapping[str, Any] = _NONE) -> Schema:
     """
-    Return the schema of a document, draft 2020-12; `kind` is its dataclass.
+    Return the schema of a document, draft 2020-12; `kind` is its dataclass, or another type.
 
     `others` are types by name in place of those of the dataclass: for a key that has any content
     there, and a narrower one in this document. Raise TypeError for a type that JSON cannot have,
     and for two dataclasses of the same name.
     """
     made = _Made()
-    content = made.record(kind, others)
+    content = made.record(kind, others) if is_record(kind) else made.of(kind)
     definitions = {name: made.definitions[name] for name in sorted(made.definitions)}
     return {
         '$schema': _DIALECT,

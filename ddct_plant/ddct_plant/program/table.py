@@ -90,6 +90,16 @@ class Column(Generic[Row]):
 
 
 @dataclass(frozen=True)
+class WrittenTable:
+    """A table as JSON has it."""
+
+    title: str
+    headers: Sequence[str]
+    rows: Sequence[Mapping[str, str]]
+    """Cells by header."""
+
+
+@dataclass(frozen=True)
 class Table:
     """Rows of text, one cell per header, the same for the terminal and a documentation page."""
 
@@ -112,10 +122,11 @@ class Table:
     complete: str = field(default='', kw_only=True)
     """Output that has every column and reason, such as '--json FILE'; empty for none."""
 
-    def as_dict(self) -> dict[str, object]:
-        """Return title, headers and rows for JSON, a row as a mapping from header to cell."""
+    @property
+    def written(self) -> WrittenTable:
+        """The table as JSON has it."""
         rows = [dict(zip(self.headers, row, strict=True)) for row in self.rows]
-        return {'title': self.title, 'headers': list(self.headers), 'rows': rows}
+        return WrittenTable(self.title, self.headers, rows)
 
 
 def table_of(

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
-from ddct_bringup.reproduction.numbers.gate import GateRow, judge
+from ddct_bringup.reproduction.numbers.gate import GateRow, NumbersDocument, judge
 from ddct_bringup.reproduction.numbers.gate_tables import chapter_tables, page_tables
 from ddct_bringup.reproduction.numbers.number_files import thesis_numbers
 from ddct_bringup.reproduction.numbers.thesis_number import Value
@@ -18,7 +18,7 @@ from ddct_bringup.reproduction.values.loop_shaping_values import loop_shaping_va
 from ddct_bringup.reproduction.values.plant_values import plant_values
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.csv_table import csv_text
-from ddct_plant.files.json_records import write_json
+from ddct_plant.files.json_records import to_json, write_json
 from ddct_plant.files.output_file import STDOUT, require_one_for_stdout, require_place, write_text
 from ddct_plant.program.command_line import complain, show_and_write
 from ddct_plant.program.printed_table import print_tables
@@ -69,11 +69,12 @@ def run(options: argparse.Namespace) -> int:
     require_place('--json', options.json)
     require_place('--csv', options.csv)
     rows = judge(thesis_numbers(), compute(SOURCES, partial(complain, 'ddct reproduce numbers')))
-    numbers = [row.as_dict() for row in rows]
-    tables = {name: table.as_dict() for name, table in page_tables(rows).items()}
-    document = {'numbers': numbers, 'tables': tables}
+    numbers = [row.entry for row in rows]
+    tables = {name: table.written for name, table in page_tables(rows).items()}
+    document = NumbersDocument(numbers, tables)
     if options.csv:
-        write_text(options.csv, csv_text(numbers[0], [list(each.values()) for each in numbers]))
+        cells = [list(to_json(each).values()) for each in numbers]
+        write_text(options.csv, csv_text(to_json(numbers[0]), cells))
     if options.csv != STDOUT:
         show_and_write(options.json, document, lambda: _print(rows))
     elif options.json:

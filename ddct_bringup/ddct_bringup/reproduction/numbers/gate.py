@@ -17,6 +17,7 @@ from ddct_bringup.reproduction.numbers.thesis_number import (
 )
 from ddct_bringup.thesis.table_5_1 import CALIBRATED, PREDICTED
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.program.table import WrittenTable
 
 _ROUNDING = Tolerance(half_units=1.0)
 LEAST_OF_ERRATUM = 2.0
@@ -30,6 +31,37 @@ OUTCOMES = (
     *('predicted hit', 'predicted miss', 'given', 'not_reproducible'),
 )
 """Possible outcomes: the verdicts, with hit or miss where both can occur."""
+
+
+@dataclass(frozen=True)
+class NumberEntry:
+    """One printed number with the computed one, as JSON and CSV have it."""
+
+    section: str
+    """Section of the thesis."""
+    item: str
+    printed: float | str
+    computed: float | str | None
+    """None where nothing is computed."""
+    unit: str
+    tolerance: float | None
+    """Largest difference in the unit; None for a statement."""
+    verdict: str
+    hit: bool | None
+    """Whether computed and printed value agree; None without a computed value."""
+    group: str
+    """Fact that the number is a part of."""
+    reason: str
+    """Reason for the tolerance; for an erratum, the error; for others, why nothing is computed."""
+
+
+@dataclass(frozen=True)
+class NumbersDocument:
+    """Document of `reproduce numbers --json`."""
+
+    numbers: Sequence[NumberEntry]
+    tables: Mapping[str, WrittenTable]
+    """Tables of the page on the numbers, by name."""
 
 
 @dataclass(frozen=True)
@@ -51,21 +83,22 @@ class GateRow:
             return verdict
         return f'{verdict} {"hit" if self.hit else "miss"}'
 
-    def as_dict(self) -> Mapping[str, object]:
-        """Return the entry in `ddct reproduce numbers --json`; missing values are None."""
+    @property
+    def entry(self) -> NumberEntry:
+        """Entry in `ddct reproduce numbers --json`."""
         number, value = self.number, self.computed
-        return {
-            'section': number.section,
-            'item': number.item,
-            'printed': float(number.printed) if number.is_number else number.printed,
-            'computed': value.evidence if isinstance(value, Finding) else value,
-            'unit': number.unit,
-            'tolerance': number.absolute_tolerance,
-            'verdict': number.verdict,
-            'hit': self.hit,
-            'group': number.fact,
-            'reason': number.reason,
-        }
+        return NumberEntry(
+            section=number.section,
+            item=number.item,
+            printed=float(number.printed) if number.is_number else number.printed,
+            computed=value.evidence if isinstance(value, Finding) else value,
+            unit=number.unit,
+            tolerance=number.absolute_tolerance,
+            verdict=number.verdict,
+            hit=self.hit,
+            group=number.fact,
+            reason=number.reason,
+        )
 
 
 def judge(

@@ -113,7 +113,7 @@ def run(options: argparse.Namespace) -> int:
             with chart_style():
                 save_figure(draw(), Path(options.charts), name)
     if options.json:
-        write_json(options.json, {name: study.as_dict() for name, study in studies.items()})
+        write_json(options.json, {name: study.document for name, study in studies.items()})
     return 0
 
 

@@ -14,7 +14,8 @@ from ddct_bringup.reproduction.study_run import StudyRun
 from ddct_bringup.thesis.table_5_1 import FORMS
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
-from ddct_plant.program.table import Column, Quantity, Table, Weight
+from ddct_plant.files.json_records import Inline
+from ddct_plant.program.table import Column, Quantity, Table, Weight, WrittenTable
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -32,6 +33,15 @@ line's width in a plot.
 
 
 @dataclass(frozen=True)
+class WrittenStudy:
+    """A study as JSON has it."""
+
+    table: Inline[WrittenTable]
+    remarks: Sequence[str]
+    """Remarks for its readers."""
+
+
+@dataclass(frozen=True)
 class Study(Table):
     """Table with remarks for its readers."""
 
@@ -39,9 +49,10 @@ class Study(Table):
     draw: 'Callable[[], matplotlib.figure.Figure] | None' = None
     """Function that returns the chart of the study, None without one."""
 
-    def as_dict(self) -> dict[str, object]:
-        """Return the table with one mapping per row, and the remarks."""
-        return {**super().as_dict(), 'remarks': list(self.remarks)}
+    @property
+    def document(self) -> WrittenStudy:
+        """The study as JSON has it."""
+        return WrittenStudy(self.written, self.remarks)
 
 
 StudyFunction = Callable[[], Study]

@@ -32,7 +32,7 @@ VALUES = {'zero': 0.765, 'pole': 78.6}
 def test_group_shows_its_misses_beside_its_hits():
     rows = judge(parse_numbers(GROUP), VALUES)
     assert [(row.computed, row.hit) for row in rows] == [(0.765, True), (78.6, False)]
-    assert {row.as_dict()['group'] for row in rows} == {'one synthesis'}
+    assert {row.entry.group for row in rows} == {'one synthesis'}
 
 
 def test_group_cannot_leave_out_a_miss():

@@ -92,7 +92,7 @@ def test_qualitative_claim_holds_by_its_finding_and_shows_its_evidence(holds):
         {'zeta': Finding(holds, '1.2 rpm')},
     )
     assert row.hit is holds and row.complaint is None
-    assert row.as_dict()['computed'] == computed_text(row) == '1.2 rpm'
+    assert row.entry.computed == computed_text(row) == '1.2 rpm'
 
 
 def test_number_without_a_tolerance_is_refused_unless_it_is_found_to_hold():
@@ -104,7 +104,7 @@ def test_number_without_a_tolerance_is_refused_unless_it_is_found_to_hold():
 def test_given_number_has_no_computed_value_and_always_holds():
     (row,) = judge([GIVEN], {})
     assert row.computed is None and row.complaint is None and row.hit is None
-    assert row.as_dict()['tolerance'] is None and row.as_dict()['group'] == '2.2, zeta'
+    assert row.entry.tolerance is None and row.entry.group == '2.2, zeta'
 
 
 def test_computed_value_without_an_entry_in_the_list_is_refused():
