@@ -5,6 +5,7 @@
 import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any, Self
 
@@ -72,16 +73,12 @@ class Text:
             raise ParameterError(f'{noun} is {name!r}: give a name or a YAML file', key=noun)
         return Text(noun, name if is_packaged(name) else str(named_in(self.folder, name)))
 
-    def content(self) -> tuple[dict[str, Any], dict[str, int]]:
+    def content(self) -> tuple[Mapping[str, Any], Mapping[str, int]]:
         """Return keys and values, and the lines of the keys; raise DdctError that names it."""
-        text = self._text()
-        with located(self.label):
-            content, lines = parse_yaml_with_lines(text)
-            if not isinstance(content, dict):
-                raise DdctError('the file must be a mapping of keys to values')
-        return content, lines
+        return _parsed(self) if self.path else _packaged(self)
 
-    def _text(self) -> str:
+    def read(self) -> str:
+        """Return the text itself; raise DdctError where there is none."""
         if not self.name:
             raise ParameterError(
                 f'{self.noun} is empty: give a name or a YAML file', key=self.noun
@@ -99,6 +96,19 @@ class Text:
                 key=self.name,
             )
         return packaged_text(self.noun, self.name)
+
+
+def _parsed(file: Text) -> tuple[Mapping[str, Any], Mapping[str, int]]:
+    text = file.read()
+    with located(file.label):
+        content, lines = parse_yaml_with_lines(text)
+        if not isinstance(content, dict):
+            raise DdctError('the file must be a mapping of keys to values')
+    return content, lines
+
+
+_packaged = cache(_parsed)
+"""The same of a file of the package, which does not change."""
 
 
 @dataclass(frozen=True)
@@ -174,14 +184,13 @@ def _require_whole(content: Mapping[str, Any]) -> None:
     A section that is off, or that has its defaults, gives all its keys. Two of mass, wheel radius
     and inertia give the third.
     """
-    whole, _ = Text(CAR, DEFAULT_CAR).content()
     lacking = []
-    for section, value in whole.items():
-        keys = [key for key in flat({section: value}) if key not in (*BODY, DESCRIPTION)]
+    for section, keys in _keys_of_whole().items():
         if section not in content:
             lacking += [section] if keys else []
         elif content[section]:
-            lacking += [key for key in keys if key not in flat({section: content[section]})]
+            given = flat({section: content[section]})
+            lacking += [key for key in keys if key not in given]
     if len({*BODY} & {*flat(content)}) < 2:
         lacking.append(f'two of {", ".join(BODY)}')
     if lacking:
@@ -190,3 +199,13 @@ def _require_whole(content: Mapping[str, Any]) -> None:
             f'`{BASE}: {DEFAULT_CAR}` to take what is missing from that car',
             key=BASE,
         )
+
+
+@cache
+def _keys_of_whole() -> dict[str, list[str]]:
+    """Return the keys that a whole car gives by section: those of the packaged car."""
+    whole, _ = Text(CAR, DEFAULT_CAR).content()
+    return {
+        section: [key for key in flat({section: value}) if key not in (*BODY, DESCRIPTION)]
+        for section, value in whole.items()
+    }
