@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The models of a run by its settings; nodes and the headless loop make them here."""
 
+from collections.abc import Callable
+
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.friction.driveline import FrictionDriveline
@@ -23,10 +25,13 @@ from ddct_plant.scenario.rules.shift import gears_of
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import AnySettings, RunSettings
 from ddct_plant.sensors.sensed import DrivelineSensors, TorqueEstimate
+from ddct_plant.shift.gear_pair import GearPair
+from ddct_plant.shift.parameters import ShiftParameters
 from ddct_plant.shift.roles import ON_COMING
 
 OPEN_BELOW = 0.01
 """Torque in N m of the actuator up to which a clutch of a shift is open."""
+_Engaged = Callable[[GearPair], EngagedGears]
 
 
 def make_driveline(settings: RunSettings, initial: InitialState) -> Driveline | FrictionDriveline:
@@ -54,13 +59,19 @@ def engagements(scenario: Scenario) -> tuple[EngagedGears, dict[int, EngagedGear
     """Return the gears that are engaged at t_0, and those that are from a step on."""
     if scenario.shift is None:
         return one_clutch(scenario.driveline), {}
-    shift, gears, changes = scenario.shift, gears_of(scenario), {}
-    first = both = both_engaged(gears)
+    gears, (first, changes) = gears_of(scenario), engagement_steps(scenario.shift)
+    return first(gears), {step: engaged(gears) for step, engaged in changes.items()}
+
+
+def engagement_steps(shift: ShiftParameters) -> tuple[_Engaged, dict[int, _Engaged]]:
+    """Return what engages the gears of a shift at t_0, and what does from a step on."""
+    first: _Engaged = both_engaged
+    changes: dict[int, _Engaged] = {}
     if preselection := steps_in('shift.preselection_s', shift.preselection_s):
-        first, changes[preselection] = off_going_engaged(gears), both
+        first, changes[preselection] = off_going_engaged, both_engaged
     if shift.disengagement_s is not None:
         disengagement = steps_in('shift.disengagement_s', shift.disengagement_s)
-        changes[disengagement] = on_coming_engaged(gears)
+        changes[disengagement] = on_coming_engaged
     return first, changes
 
 

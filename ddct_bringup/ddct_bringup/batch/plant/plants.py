@@ -18,7 +18,7 @@ from ddct_plant.models.initial_state import InitialState
 from ddct_plant.models.load import RoadLoad, resisting_torque
 from ddct_plant.plant import Observation, PlantReply, Tick
 from ddct_plant.scenario.initial_state import initial_state
-from ddct_plant.scenario.plant import engagements, holding_torque, make_load
+from ddct_plant.scenario.plant import engagement_steps, holding_torque, make_load
 from ddct_plant.scenario.rules.shift import gears_of
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.shift.roles import ROLES
@@ -48,7 +48,7 @@ def plant_kind(settings: RunSettings) -> Hashable:
     """Return what runs with common `Plants` share."""
     scenario = settings.scenario
     limited, sensed = scenario.engine_limits is not None, scenario.sensors is not None
-    changes = tuple(engagements(scenario)[1]) if settings.shift else None
+    changes = tuple(engagement_steps(scenario.shift)[1]) if scenario.shift else None
     return scenario.steps, settings.stick_slip, limited, sensed, changes
 
 
