@@ -11,7 +11,7 @@ _BLOCKS = 50
 """Smallest number of blocks of much work, so that all workers end together."""
 _TOGETHER_BLOCKS = 4
 """The same where items are computed together, and each costs less the more they are."""
-_TOGETHER_LEAST, _TOGETHER_MOST = 64, 1000
+_TOGETHER_LEAST, _TOGETHER_MOST = 256, 1000
 """Numbers of items computed together between which that smaller number of blocks is kept."""
 Item = TypeVar('Item')
 
