@@ -28,7 +28,7 @@ TAP = """(() => {
 OTHER_QUANTITY = """(() => {
   const choice = document.getElementById('quantity');
   const before = document.getElementById('high').textContent;
-  choice.value = 0;
+  choice.value = 1;
   choice.dispatchEvent(new Event('change'));
   return [before, document.getElementById('high').textContent];
 })()"""
