@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from refusals import refused
+from samples import sampled
 from support.log_coverage import BEFORE, coverage
 from support.logs import (
     NONE_LATE,
@@ -30,7 +31,7 @@ pytestmark = pytest.mark.slow
     ('late', 'rows', 'true'),
     [
         (('clutch_torque',), 1, NONE_LATE | {'clutch_torque': 0.01}),
-        (SPEEDS, 5, speeds_late(0.05)),
+        pytest.param(SPEEDS, 5, speeds_late(0.05), marks=pytest.mark.nightly),
     ],
     ids=['clutch torque 10 ms', 'speeds 50 ms'],
 )
@@ -41,7 +42,7 @@ def test_signals_that_are_rows_late_move_delays_and_not_parameters(
     require_delays_alone(pi_log, late, rows, true)
 
 
-@pytest.mark.parametrize('kind', BEFORE)
+@pytest.mark.parametrize('kind', sampled(reversed(BEFORE), every=3))
 def test_intervals_cover_the_true_values_in_a_sample_of_drives(
     pi_log: MeasuredLog, kind: str
 ) -> None:
@@ -52,7 +53,7 @@ def test_intervals_cover_the_true_values_in_a_sample_of_drives(
     assert held >= 52
 
 
-@pytest.mark.parametrize('corners_on_rows', [True, False])
+@pytest.mark.parametrize('corners_on_rows', sampled([True, False], every=2))
 def test_fractional_delays_are_found(corners_on_rows: bool) -> None:
     true = {
         'shaft_speed': 0.0037,

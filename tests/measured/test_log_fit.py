@@ -39,6 +39,7 @@ def test_every_parameter_of_a_car_of_other_code_is_found_from_another_start(fit:
     assert sum(hits(fit)) >= 7
 
 
+@pytest.mark.nightly
 def test_noise_of_the_torques_widens_the_intervals_from_another_start_too(fit: LogFit) -> None:
     """Their rate of covering the true values is in tests/nightly/measured."""
     noisy = fit_log(log_of(drive().noisy(0, 1.0)), START, drag)
@@ -156,6 +157,7 @@ def test_the_drive_of_the_other_car_has_its_stated_length() -> None:
     assert drive().time_s[-1] == pytest.approx(LASTS_S)
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_a_fit_to_an_exact_log_of_20_s_settles_within_few_evaluations(tmp_path: Path) -> None:
     """The noise of such a log is the rounding of the speeds, which grow with its length."""

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from samples import sampled
 from support.logs import identify, judged, written
 from support.other_car import COLUMNS, TRUE, drive, late_log
 
@@ -16,14 +17,6 @@ from ddct_bringup.logs.log import SPEEDS
 from ddct_plant.program import progress
 
 pytestmark = pytest.mark.slow
-
-
-def test_a_fit_prints_its_progress(
-    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(progress, '_QUIET_S', 0.0)
-    assert identify(folder) == 0
-    assert capsys.readouterr().err.startswith('fitting the driveline, evaluations: 1')
 
 
 def identify_into_file(folder: Path, *options: str) -> int:
@@ -36,14 +29,24 @@ SWAPPED = COLUMNS.replace('MdMot', 'X').replace('MdKup', 'MdMot').replace('X', '
 @pytest.mark.parametrize(
     ('columns', 'reason'),
     [
-        (SWAPPED, 'the engine slows down where engine_torque exceeds clutch_torque'),
-        (COLUMNS.replace('MdKup, unit: Nm', 'MdMot, unit: Nm'), 'the held-out'),
-        (
+        pytest.param(
             COLUMNS.replace('nMot, unit: rpm', 'nMot, unit: deg/s'),
             'rpm) in the middle, of cars it is 40 to 800 rad/s',
+            id='engine rpm as deg/s',
+        ),
+        pytest.param(
+            SWAPPED,
+            'the engine slows down where engine_torque exceeds clutch_torque',
+            marks=pytest.mark.nightly,
+            id='swapped torques',
+        ),
+        pytest.param(
+            COLUMNS.replace('MdKup, unit: Nm', 'MdMot, unit: Nm'),
+            'the held-out',
+            marks=pytest.mark.nightly,
+            id='one torque twice',
         ),
     ],
-    ids=['swapped torques', 'one torque twice', 'engine rpm as deg/s'],
 )
 def test_a_fit_that_cannot_be_right_is_refused_first_and_writes_nothing(
     folder: Path, capsys: pytest.CaptureFixture[str], columns: str, reason: str
@@ -77,21 +80,21 @@ def test_a_refused_fit_is_accepted_by_force_and_its_reason_still_comes_first(
     assert written(folder / 'mine').name == 'drive_drive_drive_car'
 
 
-def test_a_good_fit_is_accepted(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_good_fit_prints_its_progress_and_is_accepted_with_new_values(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(progress, '_QUIET_S', 0.0)
     report = folder / 'report.json'
     assert identify_into_file(folder, '--json', str(report)) == 0
-    assert 'REFUSED' not in capsys.readouterr().out
+    printed = capsys.readouterr()
+    assert printed.err.startswith('fitting the driveline, evaluations: 1')
+    assert 'REFUSED' not in printed.out
+    assert 'new car' in printed.out
+    assert 'in scenario' not in printed.out
     content = json.loads(report.read_text())
     assert (content['verdict'], content['reasons']) == ('accepted', [])
     assert {row['state'] for row in content['delays']} == {'reference', 'fitted'}
     assert all(each['nrmse'] < 0.02 for each in content['held_out']['signals'])
-
-
-def test_the_table_marks_new_values(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert identify_into_file(folder) == 0
-    printed = capsys.readouterr().out
-    assert 'new car' in printed
-    assert 'in scenario' not in printed
 
 
 def test_force_needs_a_log(capsys: pytest.CaptureFixture[str]) -> None:
@@ -99,7 +102,9 @@ def test_force_needs_a_log(capsys: pytest.CaptureFixture[str]) -> None:
     assert '--force, --out and --overwrite need a log' in capsys.readouterr().err
 
 
-@pytest.mark.parametrize('factor', [6.0, 1.0 / 6.0], ids=['deg/s as rpm', 'rpm as deg/s'])
+@pytest.mark.parametrize(
+    'factor', sampled([6.0, 1.0 / 6.0], every=2), ids=['deg/s as rpm', 'rpm as deg/s']
+)
 def test_speeds_that_are_all_wrong_by_one_factor_fit_and_are_refused_by_the_car_they_need(
     factor: float,
 ) -> None:
@@ -120,6 +125,7 @@ def test_an_engine_damping_significantly_below_zero_is_refused_and_not_written_a
     assert any('engine_damping is -0.0' in each and 'negative' in each for each in reasons)
 
 
+@pytest.mark.nightly
 def test_a_damping_below_zero_by_chance_is_zero_in_the_scenario_with_a_note() -> None:
     signals = drive().noisy(0)
     signals['engine_torque'] = signals['engine_torque'] - 0.02 * drive().signals['engine_speed']
