@@ -14,7 +14,7 @@ from ddct_plant.base.errors import DdctError
 from website.staging import ROOT, stage
 
 
-def build(out: Path, results: Path) -> int:
+def build(out: Path, results: Path, theme: str = 'furo') -> int:
     """
     Build the site into a folder, which is replaced; return the exit code of Sphinx.
 
@@ -25,7 +25,8 @@ def build(out: Path, results: Path) -> int:
         stage(source, results)
         settings = str(Path(__file__).parent)
         code = build_main(
-            ['-q', '-W', '--keep-going', '-b', 'html', '-c', settings, str(source), str(html)]
+            ['-q', '-W', '--keep-going', '-b', 'html', '-c', settings, '-D', f'html_theme={theme}']
+            + [str(source), str(html)]
         )
         if code == 0:
             shutil.rmtree(out, ignore_errors=True)

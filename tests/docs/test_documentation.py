@@ -38,7 +38,7 @@ def test_there_are_commands_to_run():
     [
         'README.md',
         'docs/controllers/writing_a_controller.md',
-        'docs/controllers/controller_files.md',
+        pytest.param('docs/controllers/controller_files.md', marks=pytest.mark.nightly),
     ],
 )
 def test_python_examples_run(page, tmp_path):

@@ -7,6 +7,7 @@ import shutil
 from pathlib import Path
 
 import pytest
+from samples import sampled
 from website.links import faults
 from website.results import FILES, MARK, with_results
 from website.staging import ROOT, staged
@@ -54,13 +55,19 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.fixture(scope='module')
-def site(tmp_path_factory: pytest.TempPathFactory, results: Path) -> Path:
-    """Return the built site; a warning of Sphinx is an error."""
+@pytest.fixture(scope='module', params=sampled(['basic', 'furo'], every=2))
+def site(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, results: Path
+) -> Path:
+    """
+    Return the built site; a warning of Sphinx is an error.
+
+    The theme of the site takes half of the time for the list of all pages beside each page.
+    """
     from website.__main__ import build
 
     out = tmp_path_factory.mktemp('made') / 'site'
-    assert build(out, results) == 0
+    assert build(out, results, request.param) == 0
     return out
 
 

@@ -22,7 +22,7 @@ pytestmark = pytest.mark.slow
 SCENARIO = load_scenario('thesis', ['duration_s=0.8', 'reference.reference_end_s=0.75'])
 
 
-@pytest.mark.parametrize('architecture', ARCHITECTURES)
+@pytest.mark.parametrize('architecture', sampled(ARCHITECTURES, every=3))
 def test_both_layouts_leave_the_same_bytes_and_the_headless_trajectory(
     tmp_path: Path, architecture: str
 ) -> None:
@@ -40,7 +40,9 @@ def test_both_layouts_leave_the_same_bytes_and_the_headless_trajectory(
 
 
 @pytest.mark.parametrize('name', sampled(['launch', 'tip_in'], every=2))
-@pytest.mark.parametrize('architecture', [name for name in ARCHITECTURES if name != 'detailed'])
+@pytest.mark.parametrize(
+    'architecture', sampled([name for name in ARCHITECTURES if name != 'detailed'], every=3)
+)
 def test_a_clutch_that_sticks_has_the_same_stored_reference_in_the_graph_and_headless(
     tmp_path: Path, architecture: str, name: str
 ) -> None:

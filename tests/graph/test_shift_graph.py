@@ -14,7 +14,7 @@ pytestmark = pytest.mark.slow
 @pytest.mark.parametrize(
     ('controller', 'handover', 'changes', 'layouts'),
     [
-        ('pi', 'adaptive', (), LAYOUTS),
+        pytest.param('pi', 'adaptive', (), LAYOUTS, marks=pytest.mark.nightly),
         ('mpc4', 'slip', ('shift.torque_cut_n_m=30', 'sensors={}'), LAYOUTS[1:]),
         pytest.param(
             'mpc_preview',

@@ -52,10 +52,12 @@ _OWN_PROCESS = ('&', 'realtime', 'ddct campaign')
 """Parts of commands that need processes of their own; a campaign's workers outlast a test."""
 _WITH_SUBCOMMANDS = {'design', 'reproduce', 'campaign'}
 _NIGHTLY = (
+    'ddct check-controller',
     'ddct design h-infinity',
     'ddct reproduce numbers',
     'ddct reproduce figures',
     'ddct reproduce studies',
+    'ddct verify',
 )
 """Commands that take more than a few seconds; other tests run parts of them."""
 _LIST = re.compile(r'--controllers (\S+)|=([^\s:]+,\S+)|:(\d+)(?= |$)')

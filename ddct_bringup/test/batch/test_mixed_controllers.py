@@ -5,6 +5,7 @@
 from collections.abc import Sequence
 
 import pytest
+from samples import sampled
 
 from ddct_bringup.batch import run_batch as module
 from ddct_bringup.batch.batchable import kind_of, why_not_batchable
@@ -18,7 +19,7 @@ LIMITS = packaged_limits()
 NAMES = ('pi', 'ls8', 'mpc3', 'pi', 'mpc_preview', 'least_jerk', 'ls3', 'mpc3')
 
 
-@pytest.mark.parametrize('scenario', ['thesis', 'launch'])
+@pytest.mark.parametrize('scenario', sampled(['thesis', 'launch'], every=2))
 def test_a_result_does_not_depend_on_the_controllers_of_other_runs(
     scenario: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

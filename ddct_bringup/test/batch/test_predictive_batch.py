@@ -13,6 +13,7 @@ from many_controllers import (
     single_torques,
     stacked_torques,
 )
+from samples import sampled
 
 from ddct_bringup.batch.batchable import kind_of
 from ddct_bringup.batch.controllers.predictive import PredictiveControllers
@@ -47,7 +48,7 @@ def recorded():
     return recorded_engagements()
 
 
-@pytest.mark.parametrize(('name', 'options'), VARIANTS, ids=IDS)
+@pytest.mark.parametrize(('name', 'options'), sampled(VARIANTS, every=4), ids=IDS)
 def test_torques_are_those_step_by_step_and_independent_of_other_runs(name, options, recorded):
     controller = make_controller(name, known(), options)
     together = stacked_torques([controller] * RUNS, recorded)
@@ -128,7 +129,9 @@ WHOLE: list[tuple[str, dict, str, dict, str]] = [
 ]
 
 
-@pytest.mark.parametrize(('name', 'options', 'scenario', 'changes', 'architecture'), WHOLE)
+@pytest.mark.parametrize(
+    ('name', 'options', 'scenario', 'changes', 'architecture'), sampled(WHOLE, every=3)
+)
 def test_whole_runs_are_those_step_by_step(name, options, scenario, changes, architecture):
     assert_step_by_step(runs_of(name, options, scenario, changes, architecture), LIMITS)
 

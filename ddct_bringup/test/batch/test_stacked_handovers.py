@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from samples import sampled
 from shifts import SHIFTS
 
 from ddct_bringup.batch.handovers.choice import make_handovers, why_no_handover
@@ -104,7 +105,7 @@ def test_a_stack_gives_the_commands_of_each_handover(runs: tuple[str, list[Recor
         assert np.array_equal(found, expected)
 
 
-@pytest.mark.parametrize('size', [1, 2, 3, 1000])
+@pytest.mark.parametrize('size', sampled([1, 2, 3, 1000], every=2))
 def test_a_command_does_not_depend_on_the_rest_of_the_stack(
     runs: tuple[str, list[Recorded]], size: int
 ) -> None:

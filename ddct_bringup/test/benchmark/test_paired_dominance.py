@@ -197,6 +197,7 @@ def test_figures_of_another_shape_or_of_other_cases_are_refused() -> None:
         compare(figures_of(cases=3), figures_of(cases=4))
 
 
+@pytest.mark.nightly
 def test_any_of_thirty_copies_is_seldom_dominated() -> None:
     """A sample of the nightly test; of 20 draws 5 % are one."""
     assert draws_with_a_dominated_copy(20, seed=1) <= 1

@@ -74,6 +74,7 @@ def test_rows_of_a_campaign_have_the_reason(crashes: Path, tmp_path: Path) -> No
         assert (row['reason'], row['valid']) == (reason, not reason)
 
 
+@pytest.mark.nightly
 def test_a_trial_of_a_tuning_is_infeasible(
     crashes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

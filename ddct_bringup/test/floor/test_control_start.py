@@ -40,7 +40,7 @@ def settings_of(**further):
 @pytest.mark.slow
 def test_one_simulation_up_to_control_start_serves_a_comparison_and_its_report(simulated):
     runs = []
-    for controller in ('pi', 'ls8', 'mpc3'):
+    for controller in ('pi', 'ls8'):
         plan = RunPlan(settings_of(), controller, 'headless')
         runs.append(simulate_and_score(plan, packaged_limits()))
     assert front_view(with_floors(runs, packaged_limits())) is not None

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from made_run import made_run
 from refusals import refused
+from samples import sampled
 from scored_metrics import SCORED
 from threadpoolctl import threadpool_info, threadpool_limits
 
@@ -88,7 +89,7 @@ def test_the_cases_of_the_sample_differ_in_what_is_variable():
     }
 
 
-@pytest.mark.parametrize(('scenario', 'controller'), [RUNS[0], RUNS[4]])
+@pytest.mark.parametrize(('scenario', 'controller'), sampled([RUNS[0], RUNS[4]], every=2))
 def test_no_metric_of_a_run_is_below_its_floor(scenario, controller):
     """More runs, of which some are at the engine's limits, are in tests/nightly/floor."""
     settings = settings_of(scenario)
@@ -116,13 +117,16 @@ def test_the_values_are_those_of_scores():
 
 @pytest.mark.parametrize(
     ('scenario', 'time_s', 'gap'),
-    [
-        ('launch', 0.8, 2.0),
-        ('launch', 0.5, 25.0),
-        ('thesis_sticking', 0.8, 5.0),
-        ('thesis', 0.5, 2.0),
-        ('thesis', 0.48, 2.0),
-    ],
+    sampled(
+        [
+            ('launch', 0.8, 2.0),
+            ('launch', 0.5, 25.0),
+            ('thesis_sticking', 0.8, 5.0),
+            ('thesis', 0.5, 2.0),
+            ('thesis', 0.48, 2.0),
+        ],
+        every=3,
+    ),
 )
 def test_the_least_peak_jerk_is_nearly_attained_by_a_run_that_locks_then(scenario, time_s, gap):
     """Where the engine is limited the intervals are wide, so the gap is wider."""

@@ -68,13 +68,13 @@ def test_a_narrow_terminal_shows_every_number_and_leaves_out_the_kind_of_proof(m
 @pytest.mark.process
 def test_the_bytes_are_the_same_with_any_number_of_workers(tmp_path, monkeypatch):
     texts = []
-    for workers in ('1', '2', '3'):
+    for workers in ('1', '3'):
         monkeypatch.setenv('DDCT_CACHE', str(tmp_path / workers))
         file = tmp_path / f'{workers}.json'
         given = ['--lock-times', '0.02,0.8,1.1', '--controllers', 'ls8,pi', '--workers', workers]
         assert main([*LAUNCH, *given, '--json', str(file)]) == 0
         texts.append(file.read_text())
-    assert texts[0] == texts[1] == texts[2]
+    assert texts[0] == texts[1]
 
 
 @pytest.mark.parametrize(

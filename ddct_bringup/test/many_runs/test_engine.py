@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Work has the same results on any workers, and what ends a process is found."""
 
+import itertools
 import multiprocessing
 import os
 import signal
@@ -13,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from samples import sampled
 
 from ddct_bringup.many_runs.blocks import block_size, blocks_of
 from ddct_bringup.many_runs.engine import WorkEngine, engine_of, results_of
@@ -37,8 +39,9 @@ def values(function: Callable[[int], Any], size: int, workers: int = 2) -> list[
         return [value for part in engine.in_order(blocks_of(ITEMS, size)) for value in part]
 
 
-@pytest.mark.parametrize('workers', [1, 2, 3])
-@pytest.mark.parametrize('size', [1, 7, 40])
+@pytest.mark.parametrize(
+    ('size', 'workers'), sampled(itertools.product([40, 7, 1], [1, 3, 2]), every=4)
+)
 def test_results_come_in_order_whatever_the_workers_and_the_blocks(
     workers: int, size: int
 ) -> None:
@@ -77,8 +80,9 @@ def _ends_at_some(item: int) -> int:
     return item
 
 
-@pytest.mark.parametrize('size', [1, 16, 40])
-@pytest.mark.parametrize('workers', [1, 2])
+@pytest.mark.parametrize(
+    ('size', 'workers'), sampled(itertools.product([16, 40, 1], [2, 1]), every=3)
+)
 def test_an_item_that_ends_its_process_has_the_reason_and_all_others_their_results(
     size: int, workers: int
 ) -> None:

@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from samples import sampled
 
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.floor.floor import floor_of
@@ -50,7 +51,10 @@ def test_it_locks_and_stays_locked(scenario, wear_gain):
 
 @pytest.mark.parametrize(
     ('scenario', 'ratio'),
-    [('launch', 1.35), ('launch_hot', 1.5), ('thesis_sticking', 1.5), ('upshift_light', 1.5)],
+    sampled(
+        [('launch', 1.35), ('launch_hot', 1.5), ('thesis_sticking', 1.5), ('upshift_light', 1.5)],
+        every=3,
+    ),
 )
 def test_its_peak_jerk_is_near_the_least_of_its_own_lock_time(scenario, ratio):
     settings, run = run_of(scenario)

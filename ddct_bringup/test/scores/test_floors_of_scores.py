@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 from made_scores import made_scores
+from samples import sampled
 
 from ddct_bringup.floor.case import case_at
 from ddct_bringup.floor.control_start import control_start
@@ -70,11 +71,14 @@ def test_a_linear_clutch_locks_where_its_slip_stays_within_the_band_of_the_rules
 
 @pytest.mark.parametrize(
     ('controller', 'settings'),
-    [
-        ('pi', settings_of('launch')),
-        ('torque_estimator', settings_of('launch')),
-        ('mpc4', settings_of()),
-    ],
+    sampled(
+        [
+            ('pi', settings_of('launch')),
+            ('torque_estimator', settings_of('launch')),
+            ('mpc4', settings_of()),
+        ],
+        every=2,
+    ),
     ids=['slips again', 'commands the engine', 'commands the engine, linear'],
 )
 def test_for_a_run_that_does_more_than_lock_once_the_least_is_a_yardstick(

@@ -60,7 +60,7 @@ def test_another_seed_searches_elsewhere(finished: Path, tmp_path: Path) -> None
     assert trials[1].values != known[1].values
 
 
-@pytest.mark.parametrize('place', sampled(['rows', 'trial', 'trials'], every=2))
+@pytest.mark.parametrize('place', sampled(['rows', 'trial', 'trials'], every=3))
 def test_a_killed_tuning_goes_on_to_the_same_bytes_with_any_number_of_workers(
     finished: Path, tmp_path: Path, place: str
 ) -> None:
@@ -224,6 +224,7 @@ def test_the_file_of_the_best_gives_the_runs_of_the_trial(finished: Path) -> Non
         assert again.metrics[name] == pytest.approx(row[name], rel=1e-9)
 
 
+@pytest.mark.nightly
 def test_the_seed_of_held_out_cases_follows_from_the_tuned_files(
     finished: Path, tmp_path: Path
 ) -> None:

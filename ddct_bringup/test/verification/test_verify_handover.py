@@ -6,13 +6,14 @@ import shutil
 from pathlib import Path
 
 import pytest
+from samples import sampled
 from verified import HANDOVER, make_bag, states, verified
 
 pytestmark = pytest.mark.slow
 SHIFT = ('--controller', 'pi', '--scenario', 'upshift')
 
 
-@pytest.mark.parametrize('module', [False, True])
+@pytest.mark.parametrize('module', sampled([True, False], every=2))
 def test_a_result_carries_the_file_of_its_handover(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], module: bool
 ) -> None:

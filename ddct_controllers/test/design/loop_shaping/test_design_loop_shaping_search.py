@@ -116,7 +116,9 @@ def test_between_bound_and_structure_the_error_has_reachable_specifications():
     [
         (0.6, 0.0005, STRUCTURES, r'15\.\d+'),
         (0.05, 0.9, STRUCTURES, r'0\.0\d+'),
-        (4.0, 1e-6, ('networks',), 'nor a slower one'),  # one structure: it tries every crossover
+        pytest.param(  # one structure: it tries every crossover
+            *(4.0, 1e-6, ('networks',), 'nor a slower one'), marks=pytest.mark.nightly
+        ),
     ],
 )
 def test_unreachable_specifications_are_named_with_reachable_ones(
