@@ -10,10 +10,10 @@ from ddct_bringup.api.shell.judging import judge_into, judged_of
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.conduct import DEVELOPMENT, HELD_OUT
 from ddct_bringup.benchmark.file_names import PAGE
+from ddct_bringup.benchmark.result_types import Result
 from ddct_bringup.evaluation.quantities import MAIN
 from ddct_bringup.evaluation.summary import GroupSummary
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.json_records import to_json
 
 
 class BenchmarkResults(NamedTuple):
@@ -26,8 +26,8 @@ class BenchmarkResults(NamedTuple):
     Columns for the sets `development` and `held_out`: `SET.success`, the share of successes, 0 to
     1, and `SET.FIGURE`, the median of each of the five figures over the successes.
     """
-    result: Any
-    """Content of `result.json`, a dict."""
+    result: Result
+    """Content of `result.json`."""
     page: Path
     """Path of the page `report.html`."""
 
@@ -68,7 +68,7 @@ def benchmark(
             for name, values in _columns(each).items()
         }
     table = pandas.DataFrame(columns).rename_axis('controller')
-    return BenchmarkResults(table, to_json(result), folder / PAGE)
+    return BenchmarkResults(table, result, folder / PAGE)
 
 
 def _columns(groups: Sequence[GroupSummary]) -> dict[str, dict[str, float | None]]:

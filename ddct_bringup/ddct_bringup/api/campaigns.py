@@ -16,10 +16,9 @@ from ddct_bringup.campaign.plan import RecordedCampaign
 from ddct_bringup.campaign.spec import read_spec, spec_of
 from ddct_bringup.campaign_report.reading import grouped_rows, read_table
 from ddct_bringup.evaluation.summarise import summary_of
-from ddct_bringup.evaluation.summary import SummaryFile
+from ddct_bringup.evaluation.summary import Summary
 from ddct_bringup.sweep.axis import Axis, axis, axis_of
 from ddct_bringup.verdict.limits import load_limits
-from ddct_plant.files.json_records import to_json
 
 
 class CampaignResults(NamedTuple):
@@ -27,8 +26,8 @@ class CampaignResults(NamedTuple):
 
     table: Any
     """pandas DataFrame with a row per run, by its index: varied values, metrics, verdict."""
-    summary: Any
-    """Content of `summary.json`, a dict."""
+    summary: Summary
+    """What came out, by group and pair, as in `summary.json`."""
 
 
 def campaign(
@@ -58,7 +57,7 @@ def read_campaign(folder: str | Path) -> CampaignResults:
     """Return the rows and the summary of a finished campaign; raise DdctError without one."""
     recorded = RecordedCampaign.read(Path(folder))
     table = read_table(Path(folder), recorded)
-    summary = to_json(SummaryFile.of(summary_of(grouped_rows(recorded, table))))
+    summary = summary_of(grouped_rows(recorded, table))
     return CampaignResults(table.to_pandas().set_index(INDEX), summary)
 
 

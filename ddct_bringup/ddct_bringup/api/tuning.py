@@ -8,10 +8,9 @@ from typing import Any, NamedTuple
 
 from ddct_bringup.api.shell.tunings import tune_into
 from ddct_bringup.campaign.arrow_columns import read_parquet
-from ddct_bringup.tuning.result import FrontEntry
+from ddct_bringup.tuning.result import FrontEntry, TuningResult
 from ddct_bringup.tuning.tables import NUMBER, TRIALS
 from ddct_bringup.tuning.tuned_names import BEST
-from ddct_plant.files.json_records import to_json
 
 
 class TuningResults(NamedTuple):
@@ -29,8 +28,8 @@ class TuningResults(NamedTuple):
 
     Parameters, objectives, `constraints.NAME`, `state`, `reason`, and `runs` computed.
     """
-    result: Any
-    """Content of `front.json`, a dict."""
+    result: TuningResult
+    """Content of `front.json`."""
     best: Path
     """Controller file of the best trial."""
 
@@ -56,7 +55,7 @@ def tune(
     result = tune_into(controller, given, folder, workers=workers, resume=resume)
     front = pandas.DataFrame(_front_rows(result.front)).set_index('number')
     tried = read_parquet(folder / TRIALS).to_pandas().set_index(NUMBER)
-    return TuningResults(front, tried, to_json(result), folder / BEST)
+    return TuningResults(front, tried, result, folder / BEST)
 
 
 def _front_rows(front: Sequence[FrontEntry]) -> list[dict[str, float | str | None]]:

@@ -19,7 +19,7 @@ def test_the_front_and_the_trials_are_tables(
     found = tune('pi', {**CONTENT, 'trials': 10}, tmp_path / 'out', workers=1)
     assert list(found.trials.index) == list(range(10))
     assert found.front.index.isin(found.trials.index).all()
-    best = found.front.loc[found.result['best']]
+    best = found.front.loc[found.result.best]
     name = next(iter(CONTENT['objectives']))
     assert best[f'development.{name}'] == found.trials.loc[best.name, name]
     assert run(str(found.best), duration=0.7).valid

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A benchmark from Python writes its folder, and is a table."""
 
-import json
 from pathlib import Path
 
 import pytest
@@ -11,6 +10,7 @@ from small_benchmark import use_small_release
 from ddct_bringup.api import DdctError, benchmark
 from ddct_bringup.benchmark.file_names import RESULT
 from ddct_bringup.evaluation.quantities import MAIN
+from ddct_plant.files.json_records import json_text
 
 pytestmark = pytest.mark.slow
 GAIN = """\
@@ -28,21 +28,21 @@ def test_the_table_has_the_shares_and_medians_of_the_result_in_its_folder(
     (tmp_path / 'gain.yaml').write_text(GAIN, encoding='utf-8')
     found = benchmark(str(tmp_path / 'gain.yaml'), tmp_path / 'mine', workers=1)
     written = (tmp_path / 'mine' / RESULT).read_text(encoding='utf-8')
-    assert json.loads(json.dumps(found.result)) == json.loads(written)
+    assert json_text(found.result) == written
     assert list(found.table.index) == ['gain', 'pi', 'ls8']
-    (judged,) = found.result['controllers']
+    (judged,) = found.result.controllers
     names = ('gain', 'pi', 'ls8')
     for part, summary in (
-        ('development', found.result['development']),
-        ('held_out', judged['held_out']),
+        ('development', found.result.development),
+        ('held_out', judged.held_out),
     ):
-        groups = [each for each in summary['groups'] if each['controller'] in names]
-        assert [each['controller'] for each in groups] == [*names]
+        groups = [each for each in summary.groups if each.controller in names]
+        assert [each.controller for each in groups] == [*names]
         for each in groups:
-            row = found.table.loc[each['controller']]
-            assert row[f'{part}.success'] == each['engaged']['count'] / each['engaged']['of']
+            row = found.table.loc[each.controller]
+            assert row[f'{part}.success'] == each.engaged.value
             for name in MAIN:
-                assert row[f'{part}.{name}'] == each['quantities'][name]['p50']
+                assert row[f'{part}.{name}'] == each.quantities[name].quantiles.p50
     assert found.page.is_file()
 
 

@@ -38,8 +38,8 @@ def test_it_is_shown_and_names_the_metric_that_it_lacks(
 ) -> None:
     before = (finished / RESULTS).read_bytes()
     summary = read_campaign(finished).summary
-    assert summary['other_version']['absent'] == [NEW.key]
-    assert NEW.key not in summary['groups'][0]['quantities']
+    assert summary.other_version.absent == (NEW.key,)
+    assert NEW.key not in summary.groups[0].quantities
     assert main(['show', str(finished)]) == 0
     printed = capsys.readouterr().out
     assert f'results of another version, without {NEW.key}' in printed

@@ -57,7 +57,7 @@ def test_a_data_frame_has_a_row_per_run_and_comes_with_the_summary(folder: Path)
     assert table.index.tolist() == list(range(12))
     failed = table[table.state != ENGAGED]
     assert failed.wear_gain.unique().tolist() == [0.8]
-    assert [each['failed']['count'] for each in summary['groups']] == [2, 2]
+    assert [each.failed.count for each in summary.groups] == [2, 2]
     assert table['engagement_time_s'].dtype == float
 
 
@@ -114,10 +114,10 @@ def test_the_interval_of_random_samples_is_shown(
 ) -> None:
     made = make_campaign(tmp_path / 'random', RANDOM, worn_fails)
     assert main(['show', str(made)]) == 0
-    (group,) = read_campaign(made).summary['groups']
-    failed = group['failed']
-    low, high = failed['low'], failed['high']
-    assert low < failed['count'] / failed['of'] < high
+    (group,) = read_campaign(made).summary.groups
+    failed = group.failed
+    low, high = failed.low, failed.high
+    assert low < failed.value < high
     assert f'{100 * low:.1f} to {100 * high:.1f} %' in capsys.readouterr().out
 
 

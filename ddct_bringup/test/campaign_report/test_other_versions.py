@@ -51,9 +51,9 @@ def test_missing_columns_stay_missing_and_unknown_ones_are_kept(
     table, summary = read_campaign(changed)
     assert ABSENT not in table
     assert set(table[UNKNOWN]) == {7.5}
-    assert summary['other_version']['absent'] == [ABSENT]
-    assert summary['other_version']['unknown'] == [UNKNOWN]
-    names = summary['groups'][0]['quantities']
+    assert summary.other_version.absent == (ABSENT,)
+    assert summary.other_version.unknown == (UNKNOWN,)
+    names = summary.groups[0].quantities
     assert ABSENT not in names
     assert 'engagement_time_s' in names
     assert main(['show', str(changed), '--csv', '-']) == 0
@@ -87,8 +87,8 @@ def test_a_key_of_another_version_is_read_without_its_nominal_value(
     parquet.write_table(renamed, changed / RESULTS)
     seal(changed)
     summary = read_campaign(changed).summary
-    assert 'wear_of_tomorrow' in summary['other_version']['no_nominal']
-    wear, mass = summary['groups'][0]['boundaries']
-    assert (wear['nominal'], wear['start']) == (None, 1.0)
-    assert mass['start'] == 1300.0
+    assert 'wear_of_tomorrow' in summary.other_version.no_nominal
+    wear, mass = summary.groups[0].boundaries
+    assert (wear.nominal, wear.start) == (None, 1.0)
+    assert mass.start == 1300.0
     assert main(['show', str(changed)]) == 0
