@@ -48,7 +48,7 @@ def tuning(controller: str = 'pi', folder: Path | None = None, **changes: Any) -
 
 def leave_out_pictures(patch: pytest.MonkeyPatch) -> None:
     """Draw no figure on the pages of tunings, which takes half of the time of a small one."""
-    patch.setattr('ddct_bringup.tuning.report.document._svg', lambda *of: b'')
+    patch.setattr('ddct_bringup.documents.bokeh_charts.draw_chart', lambda chart: [])
 
 
 def made_tuning(out: Path, **changes: Any) -> Path:
