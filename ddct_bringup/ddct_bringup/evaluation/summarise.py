@@ -3,6 +3,7 @@
 """Summarise the rows of many runs."""
 
 from collections import Counter
+from dataclasses import dataclass
 
 import numpy as np
 import pyarrow as pa
@@ -91,23 +92,47 @@ def _dominators(rows: GroupedRows) -> dict[str, tuple[str, ...]]:
     return found
 
 
+@dataclass(frozen=True)
+class _Counted:
+    """Runs that count, of which shares are."""
+
+    of: int
+    in_doubt: int
+    """Number of invalid runs besides, which may have any outcome."""
+    sample: bool
+
+    @classmethod
+    def among(cls, rows: GroupedRows, group: Group) -> '_Counted':
+        """Return the runs of a group that count."""
+        invalid = int(np.sum(rows.outcomes[group.rows] == INVALID))
+        in_doubt = 0 if rows.by.invalid_fails else invalid
+        return cls(len(group.rows) - in_doubt, in_doubt, rows.is_sample(group))
+
+    def share(self, count: int) -> Share:
+        """Return a number of them as a share, with an interval if they are a random sample."""
+        if self.sample:
+            return Share.in_sample(count, self.of, self.in_doubt)
+        return Share(count, self.of)
+
+
 def _group(rows: GroupedRows, group: Group, dominated_by: tuple[str, ...] | None) -> GroupSummary:
-    states = rows.columns[STATE][group.rows][rows.outcomes[group.rows] != INVALID]
-    counts = Counter(states.tolist())
+    outcomes = rows.outcomes[group.rows]
+    states = Counter(rows.columns[STATE][group.rows][outcomes != INVALID].tolist())
     in_focus = rows.by.focus is None or group.controller in rows.by.focus
+    counted = _Counted.among(rows, group)
     return GroupSummary(
         controller=group.controller,
         varied=group.varied,
         runs=len(group.rows),
-        invalid=len(group.rows) - len(states),
-        engaged=_share(rows, group, int(np.sum(rows.outcomes[group.rows] == ENGAGED))),
-        failed=_share(rows, group, int(np.sum(rows.failed[group.rows]))),
+        invalid=int(np.sum(outcomes == INVALID)),
+        engaged=counted.share(int(np.sum(outcomes == ENGAGED))),
+        failed=counted.share(int(np.sum(rows.failed[group.rows]))),
         states={
-            str(state): _share(rows, group, counts[state])
-            for state in dict.fromkeys((*STATES, *counts))
-            if counts[state]
+            str(state): counted.share(states[state])
+            for state in dict.fromkeys((*STATES, *states))
+            if states[state]
         },
-        no_interval='' if rows.is_sample(group) else NO_SAMPLE,
+        no_interval='' if counted.sample else NO_SAMPLE,
         reasons=_reasons(rows, group),
         parts=_parts(rows, group, in_focus=in_focus),
         boundaries=tuple(_boundary(rows, group, key) for key in rows.lines),
@@ -115,16 +140,6 @@ def _group(rows: GroupedRows, group: Group, dominated_by: tuple[str, ...] | None
         quantities=_quantities(rows, group),
         dominated_by=dominated_by,
     )
-
-
-def _share(rows: GroupedRows, group: Group, count: int) -> Share:
-    """Return a number of runs of a group as the share of those that count."""
-    runs = len(group.rows)
-    invalid = int(np.sum(rows.outcomes[group.rows] == INVALID))
-    in_doubt = 0 if rows.by.invalid_fails else invalid
-    if rows.is_sample(group):
-        return Share.in_sample(count, runs - in_doubt, in_doubt)
-    return Share(count, runs - in_doubt)
 
 
 def _reasons(rows: GroupedRows, group: Group) -> tuple[Reason, ...]:
@@ -161,7 +176,7 @@ def _parts(rows: GroupedRows, group: Group, *, in_focus: bool) -> dict[str, Part
         engaged = int(np.sum(rows.outcomes[places] == ENGAGED))
         name = str(rows.columns[rows.by.parts][places[0]])
         quantities = _quantities(rows, part, MAIN) if in_focus else {}
-        found[name] = PartSummary(_share(rows, part, engaged), quantities)
+        found[name] = PartSummary(_Counted.among(rows, part).share(engaged), quantities)
     return found
 
 
