@@ -172,7 +172,14 @@ def run_program(
 
     ends_process = argv is None
     with interruptible(ends_process=ends_process) as called, _rare_collection(ends_process):
-        return _run_program(name, lambda: called(work))
+        try:
+            result: int = called(work)
+            return result
+        except BaseException as error:
+            code = _reported(name, error)
+            if code is None:
+                raise
+            return code
 
 
 @contextlib.contextmanager
@@ -193,15 +200,14 @@ def _rare_collection(ends_process: bool) -> Iterator[None]:
             gc.freeze()
 
 
-def _run_program(name: str, work: Callable[[], int]) -> int:
-    try:
-        return work()
-    except KeyboardInterrupt as error:
+def _reported(name: str, error: BaseException) -> int | None:
+    """Report in a line what ended a program; return the exit code, None where Python shows it."""
+    if isinstance(error, KeyboardInterrupt):
         return _interrupted(name, str(error))
-    except BrokenPipeError:
+    if isinstance(error, BrokenPipeError):
         _drop_output()
         return _PIPE_CLOSED
-    except (DdctError, OSError) as error:
+    if isinstance(error, DdctError | OSError):
         # Its context does not count: what failed after an interruption has to be reported.
         if stems_from_interrupt(error.__cause__):
             return _interrupted(name)
@@ -211,12 +217,11 @@ def _run_program(name: str, work: Callable[[], int]) -> int:
             complain(name, _io_error_text(error))
             _drop_output()
         return 1
-    except Exception as error:
-        # Modules in C drop the interruption behind these two.
-        dropped = isinstance(error, ImportError | SystemError) and interrupted_by()
-        if dropped or stems_from_interrupt(error):
-            return _interrupted(name)
-        raise
+    # Modules in C drop the interruption behind these two.
+    dropped = isinstance(error, ImportError | SystemError) and interrupted_by()
+    if dropped or (isinstance(error, Exception) and stems_from_interrupt(error)):
+        return _interrupted(name)
+    return None
 
 
 def _interrupted(name: str, text: str = '') -> int:

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import threading
+from contextlib import contextmanager
 
 import pytest
 
@@ -93,13 +94,12 @@ def test_a_second_signal_at_any_moment_changes_nothing(within, name, handler, ca
 
 
 def test_a_signal_before_the_work_keeps_it_from_beginning(capsys, monkeypatch):
-    begin = command_line._run_program
-
-    def after_a_signal(name, work):
+    @contextmanager
+    def after_a_signal(ends_process):
         signal.raise_signal(signal.SIGINT)
-        return begin(name, work)
+        yield
 
-    monkeypatch.setattr(command_line, '_run_program', after_a_signal)
+    monkeypatch.setattr(command_line, '_rare_collection', after_a_signal)
     done: list[list[str]] = []
     assert run_program('x', done.append, []) == 130
     assert (done, capsys.readouterr().err) == ([], 'x: interrupted\n')
