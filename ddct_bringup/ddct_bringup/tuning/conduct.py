@@ -2,12 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Carry out a tuning: batches of trials, ended early where that is certain, each recorded."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ddct_bringup.campaign.conduct import SHARDS, begin_folder, require_going_on
-from ddct_bringup.evaluation.non_dominated import dominates
 from ddct_bringup.manifest.begun import begun_manifest
 from ddct_bringup.manifest.file_states import require_unaltered
 from ddct_bringup.manifest.inputs import InputFiles
@@ -27,18 +26,15 @@ from ddct_bringup.tuning.evaluation import TrialRuns, evaluation
 from ddct_bringup.tuning.front import why_all_invalid
 from ddct_bringup.tuning.loop_quantities import update_time
 from ddct_bringup.tuning.plan import RecordedTuning, TuningPlan
-from ddct_bringup.tuning.specification.development import parts_of
 from ddct_bringup.tuning.specification.goals import UPDATE_TIME
 from ddct_bringup.tuning.specification.parameters import Values
 from ddct_bringup.tuning.study import BATCH, TuningStudy, require_optuna
 from ddct_bringup.tuning.tables import batch_file, rows_by_trial, write_batch
-from ddct_bringup.tuning.trial import DOMINATED, FEASIBLE, NO_ROWS, Trial
+from ddct_bringup.tuning.trial import NO_ROWS, Trial
 from ddct_bringup.tuning.tuning import Tuning
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program.progress import Progress
 
-LEAST_TOGETHER = 24
-"""Fewest cases of a part whose runs are computed together: a batch of few takes nearly as long."""
 _HOPELESS = 2 * BATCH
 """Number of trials after which a tuning ends if every run so far is invalid."""
 _NO_TIMES: Mapping[int, Mapping[str, float | None]] = {}
@@ -115,7 +111,7 @@ class _Search:
             suggested = self.study.ask(batch, size)
             trials = self._recorded(batch, suggested)
             if trials is None:
-                trials = computed_batch(self.tuning, self.computed, suggested, found, self._timed)
+                trials = self.computed.batch(suggested, found, self._timed)
                 write_batch(self.out, batch, trials, self.tuning.campaign.spec)
                 keep_digests([batch_file(self.out, batch)])
                 self.study.add(trials)
@@ -166,53 +162,3 @@ class _Search:
 def batches_of(trials: int) -> list[int]:
     """Return the numbers of trials of all batches."""
     return [min(BATCH, trials - first) for first in range(0, trials, BATCH)]
-
-
-def computed_batch(
-    tuning: Tuning,
-    computed: TrialRuns,
-    suggested: Mapping[int, Values],
-    before: Sequence[Trial],
-    timed: Callable[[Trial], Trial],
-) -> list[Trial]:
-    """
-    Return the trials of a batch; `before` are all trials of earlier batches.
-
-    After each part of the cases a trial ends if it breaks a constraint, or if one of `before` is
-    better in every objective, whatever the rest of its runs come to. So no trial of the front ends
-    early. The first trial with the present values runs in all cases, to be compared. `timed` adds
-    the update time to a trial that keeps all else.
-    """
-    spec, cases = tuning.spec, tuning.cases
-    rivals = [each.costs(spec, len(cases)) for each in before if each.state == FEASIBLE]
-    loops = computed.loops(list(suggested.values()))
-    trials = [
-        Trial(number, values, further=loop).checked(spec, len(cases))
-        for (number, values), loop in zip(suggested.items(), loops, strict=True)
-    ]
-    for part in parts_of(cases, LEAST_TOGETHER if computed.together else 1):
-        going = [each for each in trials if each.state == FEASIBLE or _is_present(tuning, each)]
-        rows = computed.rows([(each.values, case) for each in going for case in part])
-        for place, each in enumerate(going):
-            of_trial = rows.slice(place * len(part), len(part))
-            trials[trials.index(each)] = _ended(tuning, each.with_rows(of_trial), rivals)
-    return [
-        timed(each).checked(spec, len(cases)) if each.state == FEASIBLE else each
-        for each in trials
-    ]
-
-
-def _is_present(tuning: Tuning, trial: Trial) -> bool:
-    return trial.number == 0 and bool(tuning.present)
-
-
-def _ended(tuning: Tuning, trial: Trial, rivals: Sequence[Sequence[float]]) -> Trial:
-    """Return a trial after a part of its runs, ended where that is certain."""
-    cases = len(tuning.cases)
-    trial = trial.checked(tuning.spec, cases)
-    if trial.state != FEASIBLE or len(trial.rows) == cases:
-        return trial
-    costs = trial.costs(tuning.spec, cases)
-    if any(dominates(rival, costs) for rival in rivals) and not _is_present(tuning, trial):
-        return trial.ended(DOMINATED, 'another one is better in every objective')
-    return trial

@@ -17,14 +17,19 @@ from ddct_bringup.campaign.conduct import RESUME
 from ddct_bringup.campaign.rows import ScoredRow
 from ddct_bringup.campaign.run_set import ImpossibleRow, PlannedRow
 from ddct_bringup.campaign.scored import Scorer, are_together
+from ddct_bringup.evaluation.non_dominated import dominates
 from ddct_bringup.many_runs.blocks import block_size, blocks_of
 from ddct_bringup.many_runs.engine import WorkEngine, Workers, workers_of
 from ddct_bringup.many_runs.work import Work
 from ddct_bringup.tuning.loop_quantities import Quantities, loop_quantities
+from ddct_bringup.tuning.specification.development import parts_of
 from ddct_bringup.tuning.specification.goals import OF_LOOP
 from ddct_bringup.tuning.specification.parameters import Values
+from ddct_bringup.tuning.trial import DOMINATED, FEASIBLE, Trial
 from ddct_bringup.tuning.tuning import Tuning
 
+LEAST_TOGETHER = 24
+"""Fewest cases of a part whose runs are computed together: a batch of few takes nearly as long."""
 PlannedCase = tuple[Values, int]
 """Values of a trial, and the number of one of its cases."""
 Asked = Values | PlannedCase
@@ -99,6 +104,41 @@ class TrialRuns:
         """Whether runs can be computed together."""
         return are_together(self.tuning.campaign)
 
+    def batch(
+        self,
+        suggested: Mapping[int, Values],
+        before: Sequence[Trial],
+        timed: Callable[[Trial], Trial],
+    ) -> list[Trial]:
+        """
+        Return the trials of a batch; `before` are all trials of earlier batches.
+
+        After each part of the cases a trial ends if it breaks a constraint, or if one of `before`
+        is better in every objective, whatever the rest of its runs come to. So no trial of the
+        front ends early. The first trial with the present values runs in all cases, to be
+        compared. `timed` adds the update time to a trial that keeps all else.
+        """
+        tuning = self.tuning
+        spec, cases = tuning.spec, tuning.cases
+        rivals = [each.costs(spec, len(cases)) for each in before if each.state == FEASIBLE]
+        loops = self.loops(list(suggested.values()))
+        trials = [
+            Trial(number, values, further=loop).checked(spec, len(cases))
+            for (number, values), loop in zip(suggested.items(), loops, strict=True)
+        ]
+        for part in parts_of(cases, LEAST_TOGETHER if self.together else 1):
+            going = [
+                each for each in trials if each.state == FEASIBLE or _is_present(tuning, each)
+            ]
+            rows = self.rows([(each.values, case) for each in going for case in part])
+            for place, each in enumerate(going):
+                of_trial = rows.slice(place * len(part), len(part))
+                trials[trials.index(each)] = _ended(tuning, each.with_rows(of_trial), rivals)
+        return [
+            timed(each).checked(spec, len(cases)) if each.state == FEASIBLE else each
+            for each in trials
+        ]
+
     def loops(self, values: Sequence[Values]) -> list[Quantities]:
         """Return the quantities of the loop of each trial that the goals need."""
         return [*chain.from_iterable(self._found(values, together=False))]
@@ -114,6 +154,22 @@ class TrialRuns:
     def _found(self, items: Sequence[Asked], *, together: bool) -> Iterator[Found]:
         blocks = blocks_of(items, block_size(len(items), together=together))
         return self.engine.in_order(blocks)
+
+
+def _is_present(tuning: Tuning, trial: Trial) -> bool:
+    return trial.number == 0 and bool(tuning.present)
+
+
+def _ended(tuning: Tuning, trial: Trial, rivals: Sequence[Sequence[float]]) -> Trial:
+    """Return a trial after a part of its runs, ended where that is certain."""
+    cases = len(tuning.cases)
+    trial = trial.checked(tuning.spec, cases)
+    if trial.state != FEASIBLE or len(trial.rows) == cases:
+        return trial
+    costs = trial.costs(tuning.spec, cases)
+    if any(dominates(rival, costs) for rival in rivals) and not _is_present(tuning, trial):
+        return trial.ended(DOMINATED, 'another one is better in every objective')
+    return trial
 
 
 @contextmanager

@@ -19,8 +19,8 @@ from ddct_bringup.api import run
 from ddct_bringup.evaluation.quantities import MAIN
 from ddct_bringup.many_runs.local_workers import ThisProcess
 from ddct_bringup.programs.tune import main
-from ddct_bringup.tuning import conduct, study
-from ddct_bringup.tuning.conduct import carry_out_tuning, computed_batch
+from ddct_bringup.tuning import conduct, evaluation, study
+from ddct_bringup.tuning.conduct import carry_out_tuning
 from ddct_bringup.tuning.evaluation import TrialRuns
 from ddct_bringup.tuning.report.folder import write_tuning
 from ddct_bringup.tuning.result import TuningResult
@@ -40,7 +40,7 @@ SAME = ('front.json', TRIALS, RUNS, 'best.yaml', 'held_out/results.parquet')
 @pytest.fixture(autouse=True)
 def no_pictures_and_small_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     leave_out_pictures(monkeypatch)
-    monkeypatch.setattr(conduct, 'LEAST_TOGETHER', 1)  # so that trials end early
+    monkeypatch.setattr(evaluation, 'LEAST_TOGETHER', 1)  # so that trials end early
 
 
 def bytes_of(folder: Path) -> list[bytes]:
@@ -167,23 +167,23 @@ def test_a_trial_that_another_betters_whatever_comes_ends_after_the_first_part()
         1: {'proportional_gain': 0.2, 'integral_gain': 0.5},
     }
     alone = TrialRuns.by(tuned, ThisProcess())
-    present, other = computed_batch(tuned, alone, asked, [rival], lambda trial: trial)
+    present, other = alone.batch(asked, [rival], lambda trial: trial)
     assert (other.state, len(other.rows)) == (DOMINATED, 1)
     assert len(present.rows) == len(tuned.cases)
     infeasible = Trial(91, {}, rows, state=INFEASIBLE)
-    _, free = computed_batch(tuned, alone, asked, [infeasible], lambda trial: trial)
+    _, free = alone.batch(asked, [infeasible], lambda trial: trial)
     assert len(free.rows) == len(tuned.cases)
 
 
 def test_a_part_has_many_runs_where_a_batch_computes_them(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(conduct, 'LEAST_TOGETHER', 3)
+    monkeypatch.setattr(evaluation, 'LEAST_TOGETHER', 3)
     tuned = tuning(constraints={'engaged': {'at_least': 1.0}})  # 5 cases: 1, 2 and 5 else
     slow = {1: {'proportional_gain': 0.05, 'integral_gain': 0.01}}
     alone = TrialRuns.by(tuned, ThisProcess())
     assert alone.together
-    (ended,) = computed_batch(tuned, alone, slow, [], lambda trial: trial)
+    (ended,) = alone.batch(slow, [], lambda trial: trial)
     assert (ended.state, len(ended.rows)) == (INFEASIBLE, 5)
 
 
@@ -196,9 +196,7 @@ def test_only_a_trial_that_keeps_all_else_is_timed_and_a_long_time_makes_it_infe
         {'proportional_gain': 0.2, 'integral_gain': 0.5},
         {'proportional_gain': 0.05, 'integral_gain': 0.01},
     )
-    trials = computed_batch(
-        tuned,
-        TrialRuns.by(tuned, ThisProcess()),
+    trials = TrialRuns.by(tuned, ThisProcess()).batch(
         {0: quick, 1: quick, 2: slow},
         [],
         lambda trial: replace(trial, further={'update_time_over_pi': times[trial.number]}),
