@@ -9,7 +9,6 @@ import numpy as np
 
 from bench.headless import step_s
 from bench.ratios import Comparison, Cost
-from ddct_bringup.batch.controllers.mixed import MixedControllers
 from ddct_bringup.batch.simulate import simulate_batch
 from ddct_controllers.registry import make_controller
 from ddct_plant.scenario.file import load_scenario
@@ -29,8 +28,7 @@ def batch_step_s(controller: str, scenario: str) -> float:
     wear = np.linspace(0.7, 1.0, RUNS).tolist()
     runs = [RunSettings(known, CaseSettings(wear_gain=each)) for each in wear]
     started = time.thread_time()
-    feedback = MixedControllers([made] * RUNS, [known] * RUNS)
-    stack = simulate_batch(runs, feedback, feedback.preview_steps)
+    stack = simulate_batch(runs, [made] * RUNS)
     elapsed = time.thread_time() - started
     steps = int(stack.last.sum())
     assert not stack.unsure.any(), f'{controller} in {scenario}: a run goes step by step'

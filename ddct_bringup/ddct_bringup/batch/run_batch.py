@@ -18,7 +18,6 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.batch.batchable import kind_of
-from ddct_bringup.batch.controllers.mixed import MixedControllers
 from ddct_bringup.batch.results import part_of_stack, stacked_results, until
 from ddct_bringup.batch.simulate import Stack, loop_kind, simulate_batch
 from ddct_bringup.scores.scored_run import ScoredRun
@@ -63,12 +62,6 @@ def run_batch(runs: Sequence[Run], limits: Limits) -> list[ScoredRun | None]:
     return results
 
 
-def _stack(runs: Sequence[Run], feedback_factor: float = 1.0) -> Stack:
-    settings, controllers = zip(*runs, strict=True)
-    mixed = MixedControllers(controllers, [run.known for run in settings])
-    return simulate_batch(settings, mixed, mixed.preview_steps, feedback_factor)
-
-
 def _chunks(runs: Sequence[Run]) -> list[list[int]]:
     """Return the indices of the runs that are computed together, chunk by chunk."""
     groups: dict[Hashable, list[int]] = defaultdict(list)
@@ -101,7 +94,8 @@ def _car(settings: RunSettings) -> Hashable:
 def _results(runs: Sequence[Run], limits: Limits) -> list[ScoredRun | None]:
     try:
         with np.errstate(all='ignore'):  # what is not finite has no result
-            stack = _stack(runs)
+            settings, controllers = zip(*runs, strict=True)
+            stack = simulate_batch(settings, controllers)
             results: list[ScoredRun | None] = [None] * len(runs)
             for length in np.unique(stack.last[~stack.unsure]).tolist():
                 for index, result in _of_length(runs, stack, length, limits):
@@ -146,9 +140,10 @@ def _repeatable(runs: Sequence[Run], stack: Trajectory) -> np.ndarray:
     suspects = np.flatnonzero((switches >= _FEWEST_SWITCHES) | (reversals >= _FEWEST_REVERSALS))
     repeatable = np.ones(len(runs), dtype=bool)
     if len(suspects):
-        suspected = [runs[index] for index in suspects.tolist()]
+        settings, controllers = zip(*[runs[index] for index in suspects.tolist()], strict=True)
         slip = stack.slip_speed[suspects]
-        again = _stack(suspected, _FEEDBACK_FACTOR).trajectory.slip_speed
+        found = simulate_batch(settings, controllers, _FEEDBACK_FACTOR)
+        again = found.trajectory.slip_speed
         again = again[:, : slip.shape[-1]]
         difference = np.max(np.abs(again - slip), axis=-1)
         repeatable[suspects] = difference <= _SLIP_TOLERANCE * np.max(np.abs(slip), axis=-1)

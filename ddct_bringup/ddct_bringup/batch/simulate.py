@@ -9,7 +9,8 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.batch.architectures import Architectures
-from ddct_bringup.batch.controllers.interface import Feedback, Measured
+from ddct_bringup.batch.controllers.interface import Measured
+from ddct_bringup.batch.controllers.mixed import MixedControllers
 from ddct_bringup.batch.handovers.choice import handover_kind, make_handovers
 from ddct_bringup.batch.open_loops import open_loop_kind
 from ddct_bringup.batch.plant.plants import Plants, plant_kind
@@ -17,6 +18,7 @@ from ddct_bringup.batch.recorder import Recorder
 from ddct_bringup.batch.references import References, reference_kind
 from ddct_bringup.batch.shift_references import ShiftReferences
 from ddct_controllers.handover.interface import HandoverMeasurement
+from ddct_controllers.interface import Controller
 from ddct_plant.plant import Observation, PlantReply, Tick
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.shift.balance import WHOLE, OnComingShare
@@ -50,17 +52,16 @@ def loop_kind(settings: RunSettings) -> Hashable:
 
 def simulate_batch(
     runs: Sequence[RunSettings],
-    controllers: Feedback,
-    preview_steps: int = 0,
+    controllers: Sequence[Controller],
     feedback_factor: float = 1.0,
 ) -> Stack:
     """
-    Return the signals of `run_headless` that scores need, of many runs.
+    Return the signals of `run_headless` that scores need, of many runs with their controllers.
 
-    All runs are of one `loop_kind`. Their controllers look at most `preview_steps` ahead.
-    The feedback torques are multiplied by `feedback_factor`.
+    All runs are of one `loop_kind`. The feedback torques are multiplied by `feedback_factor`.
     """
-    loops = _Loops(runs, controllers, preview_steps, feedback_factor)
+    feedback = MixedControllers(controllers, [run.known for run in runs])
+    loops = _Loops(runs, feedback, feedback_factor)
     steps, plants = runs[0].scenario.steps, loops.plants
     recorder = Recorder(steps, len(runs), sticking=runs[0].stick_slip, shift=runs[0].shift)
     running, last = np.ones(len(runs), dtype=bool), np.full(len(runs), steps)
@@ -83,17 +84,16 @@ class _Loops:
     def __init__(
         self,
         runs: Sequence[RunSettings],
-        controllers: Feedback,
-        preview_steps: int,
+        feedback: MixedControllers,
         feedback_factor: float,
     ) -> None:
         known, steps = [run.known for run in runs], runs[0].scenario.steps
         self.plants = Plants(runs, steps)
-        self._architectures = Architectures(known, controllers, steps, feedback_factor)
+        self._architectures = Architectures(known, feedback, steps, feedback_factor)
         self._handovers = make_handovers(known) if runs[0].shift else None
         self._references: References | ShiftReferences
         references = ShiftReferences if runs[0].shift else References
-        self._references = references(known, preview_steps, steps)
+        self._references = references(known, feedback.preview_steps, steps)
 
     @property
     def fed(self) -> np.ndarray:

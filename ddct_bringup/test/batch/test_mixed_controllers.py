@@ -11,6 +11,7 @@ from ddct_bringup.batch import run_batch as module
 from ddct_bringup.batch.batchable import kind_of, why_not_batchable
 from ddct_bringup.batch.run_batch import run_batch
 from ddct_bringup.verdict.limits import packaged_limits
+from ddct_controllers.interface import Controller
 from ddct_controllers.registry import make_controller
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
@@ -35,13 +36,15 @@ def test_a_result_does_not_depend_on_the_controllers_of_other_runs(
     assert len({kind_of(controller) for _, controller in runs}) == 3
     assert len({controller.preview_steps for _, controller in runs}) > 1
     sizes: list[int] = []
-    stack = module._stack
+    simulate = module.simulate_batch
 
-    def counted(runs: Sequence[module.Run], factor: float = 1.0) -> module.Stack:
+    def counted(
+        runs: Sequence[RunSettings], controllers: Sequence[Controller], factor: float = 1.0
+    ) -> module.Stack:
         sizes.append(len(runs))
-        return stack(runs, factor)
+        return simulate(runs, controllers, factor)
 
-    monkeypatch.setattr(module, '_stack', counted)
+    monkeypatch.setattr(module, 'simulate_batch', counted)
     together = run_batch(runs, LIMITS)
     assert sizes[0] == len(runs), 'they are not in one stack'
     assert run_batch(runs[::-1], LIMITS)[::-1] == together

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from ddct_bringup.batch.batchable import why_not_batchable
-from ddct_bringup.batch.controllers.linear import LinearControllers
 from ddct_bringup.batch.run_batch import run_batch
 from ddct_bringup.batch.simulate import simulate_batch
 from ddct_bringup.batch.stacks import by_run, product
@@ -178,8 +177,7 @@ def test_whole_trajectories_are_those_of_the_run_step_by_step():
         for i in range(3)
     ]
     runs = [(each, make_controller('ls8', each.known)) for each in settings]
-    models = [controller.linear_model() for _, controller in runs]
-    stack = simulate_batch(settings, LinearControllers(models)).trajectory
+    stack = simulate_batch(settings, [controller for _, controller in runs]).trajectory
     for index, (each, controller) in enumerate(runs):
         controller.reset()
         expected = run_headless(each, controller)

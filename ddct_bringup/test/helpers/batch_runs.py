@@ -6,7 +6,6 @@ from collections import defaultdict
 
 import numpy as np
 
-from ddct_bringup.batch.controllers.mixed import MixedControllers
 from ddct_bringup.batch.results import part_of_stack
 from ddct_bringup.batch.simulate import loop_kind, simulate_batch
 from ddct_controllers.registry import make_controller
@@ -84,8 +83,7 @@ def simulated(runs):
         groups[loop_kind(settings)].append(place)
     for places in groups.values():
         settings, controllers = zip(*[runs[place] for place in places], strict=True)
-        mixed = MixedControllers(controllers, [run.known for run in settings])
-        found = simulate_batch(settings, mixed, mixed.preview_steps)
+        found = simulate_batch(settings, controllers)
         for index, place in enumerate(places):
             end = int(found.last[index]) + 1
             signals = part_of_stack(found.trajectory, index).signals

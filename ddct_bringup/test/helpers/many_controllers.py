@@ -83,8 +83,7 @@ def assert_step_by_step(runs, limits):
     """
     assert {why_not_batchable(*run) for run in runs} == {''}
     settings, controllers = zip(*runs, strict=True)
-    stack = kind_of(controllers[0]).of(controllers, [each.known for each in settings])
-    batch = simulate_batch(settings, stack, controllers[0].preview_steps)
+    batch = simulate_batch(settings, controllers)
     for index, ours in enumerate(run_batch(runs, limits)):
         controller = controllers[index]
         expected = scored_headless(settings[index], chosen_from(controller, 'same'), limits)

@@ -17,7 +17,6 @@ from received import (
 )
 from refusals import refused
 
-from ddct_bringup.batch.controllers.linear import LinearControllers
 from ddct_bringup.batch.simulate import simulate_batch
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.run_set import PlannedRow
@@ -124,8 +123,7 @@ def test_a_batch_and_a_run_step_by_step_know_the_same(architecture: str) -> None
     varied = {**UNKNOWN, 'load.wind_speed_m_s': 7.0, 'vehicle.wheel_radius_m': 0.3}
     cases = [settings_with(each, 'thesis', architecture=architecture) for each in ({}, varied)]
     controller = make_controller('pi', cases[0].known)
-    controllers = LinearControllers([controller.linear_model()] * 2)
-    stack = simulate_batch(cases, controllers).trajectory
+    stack = simulate_batch(cases, [controller] * 2).trajectory
     for place, settings in enumerate(cases):
         alone = run_headless(settings, 'pi')
         for name in ('slip_speed', 'torque_request', 'load_torque', 'slip_reference'):
@@ -144,7 +142,7 @@ def test_a_controller_of_a_batch_finds_no_true_value() -> None:
 
     settings = settings_with(UNKNOWN, 'thesis')
     controller = make_controller(chosen_from(Kept), settings.known)
-    stack = simulate_batch([settings], LinearControllers([controller.linear_model()]))
+    stack = simulate_batch([settings], [controller])
     assert stack.trajectory.slip_speed.shape[0] == 1
     assert made
     assert not found_in(made, true_values(settings))
