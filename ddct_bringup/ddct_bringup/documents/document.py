@@ -6,11 +6,12 @@ A document: sections of tables, figures and notes, once for the terminal and for
 `terminal` prints a document and `page` makes the HTML of it; neither knows what it is about.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, TypeVar
 
 from ddct_bringup.documents.chart import Chart
+from ddct_plant.base.options import require_known
 from ddct_plant.program.table import PURE, Weight, text_or_dash
 
 
@@ -85,6 +86,7 @@ class Column:
         return replace(cell, form=cell.form or self.form, reason=cell.reason or missing)
 
 
+_Part = TypeVar('_Part', 'Table', 'Figure')
 Row = Sequence[Any]
 """One value for each column: a Cell, a number, a text, or None for a dash."""
 
@@ -110,6 +112,12 @@ class Table:
             for row in self.rows
         ]
 
+    def _repr_mimebundle_(self, **_: object) -> Mapping[str, str]:
+        """Return what a notebook shows."""
+        from ddct_bringup.documents.notebook import table_forms
+
+        return table_forms(self)
+
 
 @dataclass(frozen=True)
 class Figure:
@@ -120,6 +128,12 @@ class Figure:
     """Function that returns the chart, computed for a page alone."""
     words: str = ''
     """What it shows, for those who do not see it."""
+
+    def _repr_mimebundle_(self, **_: object) -> Mapping[str, str | bytes]:
+        """Return what a notebook shows."""
+        from ddct_bringup.documents.notebook import chart_forms
+
+        return chart_forms(self.draw())
 
 
 @dataclass(frozen=True)
@@ -185,6 +199,30 @@ class Document:
     content: Sequence[Block]
     complete: str = field(default='--json FILE', kw_only=True)
     """Output that has every number, where a terminal is too narrow."""
+
+    def table(self, title: str) -> Table:
+        """Return the table with this title, or in the section with it; raise ParameterError."""
+        return _titled(title, dict(_parts(Table, self.content)))
+
+    def figure(self, title: str) -> Figure:
+        """Return the figure with this title, or in the section with it; raise ParameterError."""
+        return _titled(title, dict(_parts(Figure, self.content)))
+
+
+def _parts(
+    kind: type[_Part], blocks: Sequence[Block], title: str = ''
+) -> Iterator[tuple[str, _Part]]:
+    """Yield the parts of a kind with their titles, or that of their section; the last first."""
+    for block in reversed(blocks):
+        if isinstance(block, Section):
+            yield from _parts(kind, block.content, block.title)
+        elif isinstance(block, kind):
+            yield block.title or title, block
+
+
+def _titled(title: str, parts: Mapping[str, _Part]) -> _Part:
+    require_known([title], parts, 'title')
+    return parts[title]
 
 
 def given(*blocks: Block | None) -> list[Block]:

@@ -87,7 +87,7 @@ class _TableView:
             )
             for number, row in enumerate(cells)
         ]
-        return cls(rows, groups, [*_reasons(table, cells), *table.notes])
+        return cls(rows, groups, notes_below(table))
 
 
 def _groups(columns: Sequence[Column]) -> Mapping[int, int]:
@@ -154,10 +154,10 @@ def _bar(bar: Bar) -> Markup:
     return Markup('<span class="track">{}</span>').format(drawn)
 
 
-def _reasons(table: Table, cells: Sequence[Sequence[Cell]]) -> Iterator[str]:
-    """Yield a line for each reason of dashes and stars."""
+def notes_below(table: Table) -> list[str]:
+    """Return the lines below a table: each reason of dashes and stars, then its notes."""
     found: dict[tuple[str, str], list[str]] = {}
-    for row in cells:
+    for row in table.cells:
         for cell, column in zip(row, table.columns, strict=True):
             if cell.reason:
                 sign = '–' if cell.value is None else '*'
@@ -165,5 +165,7 @@ def _reasons(table: Table, cells: Sequence[Sequence[Cell]]) -> Iterator[str]:
                 name = ' '.join(filter(None, (column.group, column.title)))
                 if name not in titles:
                     titles.append(name)
-    for (sign, reason), titles in found.items():
-        yield f'{sign} in {", ".join(titles)}: {reason}'
+    reasons = [
+        f'{sign} in {", ".join(titles)}: {reason}' for (sign, reason), titles in found.items()
+    ]
+    return [*reasons, *table.notes]

@@ -6,6 +6,7 @@ import io
 import re
 
 import numpy as np
+from refusals import refused
 
 from ddct_bringup.documents.chart import Chart, Line, Panel
 from ddct_bringup.documents.document import (
@@ -24,6 +25,7 @@ from ddct_bringup.documents.document import (
 from ddct_bringup.documents.page import html_page
 from ddct_bringup.documents.palette import looks
 from ddct_bringup.documents.terminal import print_document
+from ddct_plant.base.errors import ParameterError
 from ddct_plant.program.table import Weight
 
 COLUMNS = (
@@ -97,3 +99,21 @@ def test_the_page_has_every_number_and_reason_and_escapes_what_it_shows() -> Non
 
 def test_blocks_without_content_are_left_out() -> None:
     assert given(None, Table('', COLUMNS, []), Remarks('x', []), Section('y', [])) == []
+
+
+def test_a_notebook_has_the_tables_and_figures_of_the_document_by_their_titles() -> None:
+    def drawn() -> Chart:
+        x = np.array([0.0, 1.0])
+        return Chart('over time', (Panel((Line(x, x, looks(1)[0], 'pi'),)),))
+
+    given_by = document(drawn)
+    forms = given_by.table('Times')._repr_mimebundle_()
+    assert '<td>mpc_&lt;3&gt;</td><td>-</td><td>-12.5*</td>' in forms['text/html']
+    assert '<p>* in held out engaged: of one run alone</p>' in forms['text/html']
+    assert re.search(r'pi +1\.25 +90\.0 \(of 10\)', forms['text/plain'])
+    assert given_by.table('folded').columns == COLUMNS
+    picture = given_by.figure('t_a')._repr_mimebundle_()
+    assert picture['image/png'][:4] == b'\x89PNG'
+    assert picture['text/plain'] == 'over time'
+    with refused(ParameterError, 'Time'):
+        given_by.table('Time')
