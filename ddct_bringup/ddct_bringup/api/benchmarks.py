@@ -58,15 +58,12 @@ def benchmark(
     for name, reason in failed.items():
         raise DdctError(f'{name}: {reason}')
     (found,) = result.controllers
-    columns = {}
-    if found.held_out and result.development:
-        theirs = found.held_out.groups
-        ours = [result.development.group(each.controller) for each in theirs]
-        columns = {
-            f'{part}.{name}': values
-            for part, each in ((DEVELOPMENT, ours), (HELD_OUT, theirs))
-            for name, values in _columns(each).items()
-        }
+    sets = zip(*result.side_by_side(found), strict=True)
+    columns = {
+        f'{part}.{name}': values
+        for part, groups in zip((DEVELOPMENT, HELD_OUT), sets, strict=True)
+        for name, values in _columns(groups).items()
+    }
     table = pandas.DataFrame(columns).rename_axis('controller')
     return BenchmarkResults(table, result, folder / PAGE)
 

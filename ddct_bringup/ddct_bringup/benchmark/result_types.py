@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from ddct_bringup.benchmark.update_times import UpdateTimesFile
 from ddct_bringup.evaluation.held_out_gaps import Gap
-from ddct_bringup.evaluation.summary import Summary
+from ddct_bringup.evaluation.summary import GroupSummary, Summary
 from ddct_bringup.manifest.origin import CodeOrigin
 from ddct_plant.files.json_records import Inline
 
@@ -81,6 +81,14 @@ class Result:
     def judged(self) -> tuple[JudgedResult, ...]:
         """Controllers that have results."""
         return tuple(each for each in self.controllers if each.held_out)
+
+    def side_by_side(self, judged: JudgedResult) -> tuple[tuple[GroupSummary, GroupSummary], ...]:
+        """Return development and held-out cases of a judged controller and of those beside it."""
+        if not (self.development and judged.held_out):
+            return ()
+        return tuple(
+            (self.development.group(each.controller), each) for each in judged.held_out.groups
+        )
 
 
 @dataclass(frozen=True)
