@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 from by_schema import require_schema
 from conformance import right_controllers
+from samples import sampled
 from support.complaints import assert_one_line
 from support.third_party import install
 
@@ -132,7 +133,9 @@ def test_there_are_ten_controllers_in_order() -> None:
     assert len(RIGHT) >= 10
 
 
-@pytest.mark.parametrize('name', ['pi', 'ls8', 'hinf1', 'lqi', 'mpc4', 'least_jerk'])
+@pytest.mark.parametrize(
+    'name', sampled(['pi', 'ls8', 'hinf1', 'lqi', 'mpc4', 'least_jerk'], every=2)
+)
 def test_a_packaged_controller_fails_no_check(name: str) -> None:
     """One of each kind; all of them are nightly."""
     outcomes = outcomes_of(name)

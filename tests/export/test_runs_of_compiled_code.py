@@ -94,6 +94,7 @@ def test_the_update_times_of_a_run_come_out_of_its_process(counter: str) -> None
     assert min(timing.update_times_us) > 0.0
 
 
+@pytest.mark.nightly
 def test_two_of_a_comparison_count_from_one(counter: str, folder: Path, tmp_path: Path) -> None:
     other = folder / 'other.yaml'
     other.write_text(Path(counter).read_text().replace('name: counting', 'name: other'))
@@ -189,6 +190,7 @@ def test_a_crash_fails_the_checks_in_which_it_happens(harm: str, counter: str) -
     assert f'{ENDS[3]} when update was called at step 65: mend it' in found['answers'].detail
 
 
+@pytest.mark.nightly
 def test_checks_share_the_trials_that_each_of_them_needs(
     counter: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -235,6 +237,7 @@ def test_another_controller_with_its_options_is_compiled_code_too(
     assert f'{ENDS[3]} when update was called at step 65' in str(raised.value)
 
 
+@pytest.mark.nightly
 def test_a_result_carries_the_library_and_comes_out_again(tmp_path: Path) -> None:
     place, out = tmp_path / 'place', tmp_path / 'runs'
     place.mkdir()

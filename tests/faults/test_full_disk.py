@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from samples import sampled
 from support.complaints import assert_one_line
 from support.processes import processes_left
 
@@ -34,7 +35,7 @@ def small_disk(tmp_path: Path) -> Iterator[Path]:
     subprocess.run(['umount', str(disk)], check=True)
 
 
-@pytest.mark.parametrize('layout', [[], ['--headless']])
+@pytest.mark.parametrize('layout', sampled([[], ['--headless']], every=2))
 def test_a_full_disk_ends_the_run_with_the_file_and_the_reason(
     small_disk: Path, capfd: pytest.CaptureFixture[str], layout: list[str]
 ) -> None:

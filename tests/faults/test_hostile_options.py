@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from samples import sampled
 from support.complaints import assert_one_line
 from support.processes import Program, Programs, package_of
 
@@ -103,7 +104,7 @@ def test_every_program_ends_through_the_one_wrapper(package: str) -> None:
         assert any(f'{end}(' in main for end in WRAPPERS), program
 
 
-@pytest.mark.parametrize('home', [None, '/proc/nowhere'])
+@pytest.mark.parametrize('home', sampled(['/proc/nowhere', None], every=2))
 def test_without_a_home_the_advice_is_to_name_a_folder_for_the_logs(
     programs: Programs, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, home: str | None
 ) -> None:

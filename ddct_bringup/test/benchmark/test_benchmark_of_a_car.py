@@ -63,6 +63,7 @@ def test_the_controllers_beside_run_in_the_development_cases_of_the_car(place: P
     assert 'tip_in is left out, since the car cannot drive it' in page
 
 
+@pytest.mark.nightly
 def test_a_result_that_moved_without_the_car_verifies(
     place: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

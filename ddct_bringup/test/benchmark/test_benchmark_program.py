@@ -120,6 +120,7 @@ def test_the_bytes_are_the_same_after_an_interruption(place: Path, tmp_path: Pat
     assert [line for line in other if 'class="num wall"' not in line] == []
 
 
+@pytest.mark.nightly
 def test_verify_computes_all_of_it_again(
     place: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

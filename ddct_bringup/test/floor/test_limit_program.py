@@ -77,6 +77,7 @@ def test_the_bytes_are_the_same_with_any_number_of_workers(tmp_path, monkeypatch
     assert texts[0] == texts[1]
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ('metrics', 'other'), [('peak_jerk,weighted_acceleration', 'weighted_acceleration')]
 )

@@ -89,6 +89,7 @@ def test_a_controller_of_a_campaign_and_of_a_sweep_finds_nothing(tmp_path: Path)
     assert not found_in(kept, values_of())
 
 
+@pytest.mark.nightly
 def test_a_controller_of_a_tuning_finds_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -107,6 +108,7 @@ def test_a_controller_of_a_tuning_finds_nothing(
     assert notes_in(found) == NOTHING
 
 
+@pytest.mark.nightly
 def test_a_controller_of_a_benchmark_finds_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

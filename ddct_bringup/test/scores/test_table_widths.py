@@ -58,6 +58,9 @@ PROGRAMS: dict[str, Callable[[], object]] = {
     'sweep --list': lambda: sweep.main(['--list']),
 }
 
+LONG = ('benchmark --packaged', 'reproduce numbers')
+"""Programs that take a second."""
+
 
 @cache
 def _shown(name: str, *, is_terminal: bool) -> Sequence[str]:
@@ -72,8 +75,14 @@ def _shown(name: str, *, is_terminal: bool) -> Sequence[str]:
 
 
 @pytest.mark.process
-@pytest.mark.parametrize(('is_terminal', 'width'), [(True, 80), (False, 120)])
-@pytest.mark.parametrize('name', PROGRAMS)
+@pytest.mark.parametrize(
+    ('name', 'is_terminal', 'width'),
+    [
+        *((name, False, 120) for name in PROGRAMS),
+        *((name, True, 80) for name in PROGRAMS if name not in LONG),
+        *(pytest.param(name, True, 80, marks=pytest.mark.nightly) for name in LONG),
+    ],
+)
 def test_no_line_is_too_wide_and_no_cell_is_cut(name: str, width: int, is_terminal: bool) -> None:
     lines = _shown(name, is_terminal=is_terminal)
     assert lines

@@ -95,6 +95,7 @@ def test_an_edited_search_seed_is_found(finished: Path, tmp_path: Path) -> None:
     assert found['shards'] == found[TRIALS] == 'different'
 
 
+@pytest.mark.nightly
 def test_an_edited_name_of_the_controller_is_found(finished: Path, tmp_path: Path) -> None:
     def other_name(content: dict[str, Any]) -> None:
         content['plan']['controller']['name'] = 'mine'

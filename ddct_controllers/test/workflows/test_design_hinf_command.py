@@ -53,6 +53,7 @@ def test_the_json_has_every_figure(capsys):
     assert len(found['pulse_transfer_function']['denominator']) > 5
 
 
+@pytest.mark.nightly
 def test_the_controller_it_writes_runs_as_designed(tmp_path, capsys):
     require_written_as_designed(tmp_path, capsys, 'fitted')
 

@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from samples import sampled
 from waiting import WITHIN_S
 
 from ddct_plant.base.errors import DdctError, ParameterError
@@ -104,7 +105,7 @@ def test_a_fault_of_the_program_keeps_its_traceback():
         ("Path('/proc/x').write_text('')", '/proc/x: No such file or directory'),
     ],
 )
-@pytest.mark.parametrize('unbuffered', ['', '1'])
+@pytest.mark.parametrize('unbuffered', sampled(['', '1'], every=2))
 def test_what_the_system_refuses_is_one_line_without_a_traceback(work, expected, unbuffered):
     program = (
         'import sys\n'

@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The energy of a whole shift: what the engine gives is stored, lost in friction or in dampers."""
 
+import itertools
 from typing import Any
 
 import numpy as np
 import pytest
+from samples import sampled
 from shifts import SHIFTS, run, shift_settings
 
 from ddct_plant.base.timebase import SUBSTEP_S, SUBSTEPS
@@ -106,8 +108,12 @@ class Ledger:
         return total
 
 
-@pytest.mark.parametrize('keys', [{}, {'preselection_s': 0.2, 'disengagement_s': 1.0}])
-@pytest.mark.parametrize('name', SHIFTS)
+@pytest.mark.parametrize(
+    ('name', 'keys'),
+    sampled(
+        itertools.product(SHIFTS, [{}, {'preselection_s': 0.2, 'disengagement_s': 1.0}]), every=3
+    ),
+)
 def test_the_engine_work_is_stored_or_lost_in_friction_dampers_and_load(name, keys):
     settings = shift_settings(name, **keys)
     ledger = Ledger(settings.scenario.driveline)

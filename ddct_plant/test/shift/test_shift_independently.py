@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from samples import sampled
 from scipy.integrate import solve_ivp
 from shifts import Law, Sample, run, shift_settings
 
@@ -182,7 +183,7 @@ def shift_by_the_other_method(settings: RunSettings) -> tuple[np.ndarray, np.nda
     return found[:, :3], found[:, -1]
 
 
-@pytest.mark.parametrize('name', ['upshift', 'upshift_2_3'])
+@pytest.mark.parametrize('name', sampled(['upshift', 'upshift_2_3'], every=2))
 def test_a_whole_shift_and_its_tie_up_are_within_1e_9_of_another_integration(name):
     settings = shift_settings(name)
     found: list[list[float]] = []

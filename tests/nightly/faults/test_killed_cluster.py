@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from support.dask_cluster import start_cluster
 from support.processes import Program, Programs
-from support.short_campaign import wait_for_shards, write_specification
+from support.short_campaign import RUNS, shards, wait_for_shards, write_specification
 
 from ddct_bringup.campaign import conduct
 from ddct_bringup.campaign.conduct import RESULTS
@@ -17,17 +17,23 @@ from ddct_bringup.many_runs.local_workers import ThisProcess
 from ddct_bringup.programs import campaign
 
 
-def test_a_worker_of_a_cluster_that_dies_costs_a_campaign_only_time(
+def test_a_cluster_goes_on_with_a_campaign_and_a_worker_that_dies_costs_only_time(
     tmp_path: Path,
     programs: Programs,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     whole, out = tmp_path / 'whole', tmp_path / 'out'
     spec = write_specification(tmp_path)
+    arguments = (str(spec), '--out', str(out))
+    local = programs.start_module('ddct_bringup.programs.campaign', *arguments, '--workers', '1')
+    wait_for_shards(out, 1)
+    local.send(signal.SIGINT)
+    assert local.wait() == 130
+    assert shards(out) < RUNS, 'the cluster has nothing left to do'
     address, workers = start_cluster(programs, monkeypatch, workers=2)
-    killer = threading.Thread(target=_kill_when, args=(workers[0], out, 1))
+    killer = threading.Thread(target=_kill_when, args=(workers[0], out, shards(out) + 1))
     killer.start()
-    assert campaign.main([str(spec), '--out', str(out), '--scheduler', address]) == 0
+    assert campaign.main([*arguments, '--resume', '--scheduler', address]) == 0
     killer.join()
     monkeypatch.setattr(conduct, 'workers_of', lambda *_: ThisProcess())
     assert campaign.main([str(spec), '--out', str(whole)]) == 0

@@ -70,6 +70,7 @@ def test_charts_come_as_picture_and_drawing_with_their_data(monkeypatch, tmp_pat
     assert data[1:] == ['0,2,3,4', '0.01,1,2,3', '0.02,0.5,1.5,2.5']
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_the_chart_of_every_controller_is_a_picture_of_less_than_150_kb():
     time_s = 0.01 * np.arange(301)
