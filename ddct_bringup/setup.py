@@ -43,7 +43,6 @@ setup(
     package_data={
         PACKAGE: ['py.typed'],
         f'{PACKAGE}.benchmark': ['packaged/*'],
-        f'{PACKAGE}.benchmark.report': ['*.j2', '*.css', '*.js'],
         f'{PACKAGE}.campaign_report': ['*.j2', '*.css', '*.js'],
         f'{PACKAGE}.documents': ['*.j2', '*.css', '*.js'],
         f'{PACKAGE}.report': ['*.j2', '*.css', '*.js'],

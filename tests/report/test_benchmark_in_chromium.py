@@ -12,9 +12,10 @@ from ddct_bringup.benchmark.conduct import JudgedRows
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.benchmark.plan import BenchmarkPlan, RecordedBenchmark
 from ddct_bringup.benchmark.release import release_rows
-from ddct_bringup.benchmark.report.page import benchmark_page
+from ddct_bringup.benchmark.report.document import benchmark_document
 from ddct_bringup.benchmark.result import result_of
 from ddct_bringup.benchmark.update_times import UpdateTime, UpdateTimesFile
+from ddct_bringup.documents.page import html_page
 from ddct_bringup.manifest.inputs import InputFiles
 from ddct_bringup.manifest.origin import CodeOrigin
 
@@ -46,10 +47,8 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     recorded = RecordedBenchmark(plan, CodeOrigin.here(), out)
     result = result_of(recorded, release, judged, {})
     file = out / 'report.html'
-    file.write_text(
-        benchmark_page(result, UpdateTimesFile('pi', {'ls8': TIMES})),
-        encoding='utf-8',
-    )
+    document = benchmark_document(result, UpdateTimesFile('pi', {'ls8': TIMES}))
+    file.write_text(html_page(document), encoding='utf-8')
     return file
 
 

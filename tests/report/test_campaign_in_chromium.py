@@ -17,14 +17,21 @@ pytestmark = [
         chromium() is None, reason='no Chromium on this machine (Debian: apt install chromium)'
     ),
 ]
-WORDS = "[...document.querySelectorAll('.map text.word')].map((each) => each.textContent)"
-UNPAINTED = """[...document.querySelectorAll('.map rect')].filter((cell) =>
-  !cell.hasAttribute('fill') && !cell.nextElementSibling?.getAttribute('d')).length"""
-TAP = """(() => {
-  const cell = document.querySelector('.map rect');
-  cell.dispatchEvent(new Event('click'));
+SHAPES = """Bokeh.documents[0].roots().flatMap((chart) => chart.renderers)
+  .filter((each) => each.name === 'cells').map((each) => each.data_source)"""
+CELLS = f'{SHAPES}.reduce((sum, {{data}}) => sum + data.x.length, 0)'
+UNPAINTED = f"""(() => {{
+  const ramp = new Set(JSON.parse(document.getElementById('maps-data').textContent).ramp);
+  return {SHAPES}.flatMap(({{data}}) => data.colour.filter(
+    (colour, place) => !ramp.has(colour) && data.hatch[place] === ' ')).length;
+}})()"""
+WORDS = """Bokeh.documents[0].roots().flatMap((chart) => chart.renderers)
+  .filter((each) => each.name === 'words').flatMap((each) => [...each.data_source.data.word])
+  .filter((word) => !/^[0-9]/.test(word))"""
+TAP = f"""(() => {{
+  {SHAPES}[0].selected.indices = [0];
   return document.querySelector('.detail').textContent;
-})()"""
+}})()"""
 OTHER_QUANTITY = """(() => {
   const choice = document.getElementById('quantity');
   const before = document.getElementById('high').textContent;
@@ -51,8 +58,7 @@ def test_maps_name_failed_runs_describe_a_tapped_run_and_can_be_printed(
     campaign: Path, visit: Visitor
 ) -> None:
     overflow = 'document.documentElement.scrollWidth - innerWidth'
-    cells = "document.querySelectorAll('.map rect').length"
-    scripts = [overflow, cells, UNPAINTED, WORDS, TAP, OTHER_QUANTITY, PRINT]
+    scripts = [overflow, CELLS, UNPAINTED, WORDS, TAP, OTHER_QUANTITY, PRINT]
     seen = visit(campaign / PAGE, width=390, scheme='dark', scripts=scripts)
     assert seen.errors == []
     assert {request.partition(':')[0] for request in seen.requests} <= {'file', 'data'}

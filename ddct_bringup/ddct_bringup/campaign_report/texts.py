@@ -3,14 +3,16 @@
 """Definitions and texts of a summary for the page and the terminal."""
 
 import shlex
+from collections.abc import Iterator
 
+from ddct_bringup.documents.document import Terms
 from ddct_bringup.documents.page_parts import value_text
 from ddct_bringup.evaluation.attribution import FEWEST
 from ddct_bringup.evaluation.boundaries import BoundarySide
 from ddct_bringup.evaluation.parts import MOST_PARTS, KeyPart
 from ddct_bringup.evaluation.share import CONFIDENCE, METHOD
 from ddct_bringup.evaluation.spread import ONE_IN
-from ddct_bringup.evaluation.summary import GroupSummary, PairSummary, Summary
+from ddct_bringup.evaluation.summary import GroupSummary, OtherVersion, PairSummary, Summary
 from ddct_bringup.verdict.state import ENGAGED
 
 RULES = {
@@ -48,6 +50,11 @@ RULES = {
     'It does not cover zero where one of the two is better in the middle.',
 }
 """Definitions by term."""
+
+
+def terms(*names: str) -> Terms:
+    """Return the definitions of terms."""
+    return Terms({name: RULES[name] for name in names})
 
 
 def replay_command(folder: str, index: int | str) -> str:
@@ -137,7 +144,6 @@ def joint_outcomes_text(pair: PairSummary) -> str:
 
 def notes_of(summary: Summary) -> list[str]:
     """Return notes to be shown next to the tables, a line each."""
-    other = summary.other_version
     found = [
         f'no interval: {reason}'
         for reason in dict.fromkeys(each.no_interval for each in summary.groups)
@@ -148,12 +154,14 @@ def notes_of(summary: Summary) -> list[str]:
         for group in summary.groups
         if group.causes and group.causes.too_few
     ]
-    if other.absent:
-        found.append(f'results of another version, without {", ".join(other.absent)}')
-    if other.unknown:
-        found.append(
-            f'results of another version, also with {", ".join(other.unknown)}: in --csv only'
-        )
-    if other.no_nominal:
-        found.append(f'the nominal values are not known: {other.no_nominal}')
     return found
+
+
+def other_version_lines(other: OtherVersion) -> Iterator[str]:
+    """Yield how results of another version differ from those of this one."""
+    if other.absent:
+        yield f'without {", ".join(other.absent)}'
+    if other.unknown:
+        yield f'also with {", ".join(other.unknown)}: in --csv only'
+    if other.no_nominal:
+        yield f'the nominal values are not known: {other.no_nominal}'

@@ -10,6 +10,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
 
+from markupsafe import Markup
+
 from ddct_bringup.documents.chart import Chart
 from ddct_plant.base.options import require_known
 from ddct_plant.program.table import PURE, Weight, text_or_dash
@@ -38,7 +40,7 @@ class Cell:
     reason: str = ''
     """Reason of the dash, or a reservation about the value, which gets a star."""
     below: str = ''
-    """What a page has in small letters below the value, and the terminal in brackets after it."""
+    """What a page has in small letters below the value, and the terminal after it."""
     hint: str = ''
     """What a page shows where the pointer rests, such as a command."""
     alarming: bool = False
@@ -50,7 +52,9 @@ class Cell:
     @property
     def text(self) -> str:
         """Text of the value without its unit, or a dash."""
-        return self.value if isinstance(self.value, str) else text_or_dash(self.value, self.form)
+        if isinstance(self.value, str):
+            return self.value
+        return text_or_dash(self.value, self.form).replace('%', ' %')
 
 
 @dataclass(frozen=True)
@@ -61,7 +65,7 @@ class Column:
     unit: str = PURE
     """Unit, such as m/s^2, or PURE."""
     form: str = ''
-    """Format of its numbers, such as '.3f'; a cell may have its own."""
+    """Format of its numbers, such as '.3f', or '.1%' of shares; a cell may have its own."""
     number: bool = True
     """Whether it is aligned to the right and never wrapped."""
     weight: Weight = Weight.NEEDED
@@ -120,11 +124,23 @@ class Table:
 
 
 @dataclass(frozen=True)
+class Drawing:
+    """Chart with controls of its own: what a figure draws that `Chart` has no words for."""
+
+    html: str
+    figures: Mapping[str, Any]
+    """Figures of Bokeh by their places in the HTML."""
+    style: Markup
+    script: Markup
+    """Script that fills the figures on the event `drawn`, which has their views by place."""
+
+
+@dataclass(frozen=True)
 class Figure:
     """Chart of a page; the terminal has the numbers in tables."""
 
     title: str
-    draw: Callable[[], Chart]
+    draw: Callable[[], Chart | Drawing]
     """Function that returns the chart, computed for a page alone."""
     words: str = ''
     """What it shows, for those who do not see it."""
@@ -133,7 +149,10 @@ class Figure:
         """Return what a notebook shows."""
         from ddct_bringup.documents.notebook import chart_forms
 
-        return chart_forms(self.draw())
+        drawn = self.draw()
+        if isinstance(drawn, Drawing):  # its script needs the page
+            return {'text/plain': self.words}
+        return chart_forms(drawn)
 
 
 @dataclass(frozen=True)

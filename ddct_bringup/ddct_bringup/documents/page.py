@@ -11,7 +11,17 @@ from typing import Any
 from markupsafe import Markup, escape
 
 from ddct_bringup.documents.bokeh_charts import PageCharts, library
-from ddct_bringup.documents.document import Bar, Block, Cell, Column, Document, Table
+from ddct_bringup.documents.chart import Chart
+from ddct_bringup.documents.document import (
+    Bar,
+    Block,
+    Cell,
+    Column,
+    Document,
+    Drawing,
+    Figure,
+    Table,
+)
 from ddct_bringup.documents.page_parts import (
     DOCUMENTS,
     MARKER,
@@ -29,16 +39,36 @@ _MINUS = re.compile(r'(?<![\w.])-(?=\d)')
 
 def html_page(document: Document) -> str:
     """Return the HTML of a document."""
+    charts, drawings = PageCharts(), list[Drawing]()
+
+    def drawn(figure: Figure) -> Markup:
+        """Return the element of a chart, whose figures and script the page gets."""
+        chart = figure.draw()
+        if isinstance(chart, Chart):
+            return charts.add(chart, figure.words)
+        for place, each in chart.figures.items():
+            charts.add_figure(place, each)
+        drawings.append(chart)
+        return Markup(chart.html)
+
+    def style() -> Markup:
+        parts = (page_part(DOCUMENTS, name) for name in ('page.css', 'charts.css'))
+        return Markup().join([*parts, *(each.style for each in drawings)])
+
+    def script() -> Markup:
+        parts = (page_part(DOCUMENTS, name) for name in ('page.js', 'charts.js', 'document.js'))
+        bokeh = [library()] if charts else []
+        return Markup().join([*bokeh, *(each.script for each in drawings), *parts])
+
     return page_template(DOCUMENTS, 'page.html.j2').render(
         marker=Markup(MARKER),
-        style=page_part(DOCUMENTS, 'page.css') + page_part(DOCUMENTS, 'charts.css'),
-        script=page_part(DOCUMENTS, 'page.js') + page_part(DOCUMENTS, 'charts.js'),
-        charts=PageCharts(),
-        library=library,
-        json_data=json_data,
         document=document,
         kind_of=_kind_of,
         views=_TableView.of,
+        drawn=drawn,
+        style=style,
+        script=script,
+        data=lambda: json_data(charts.data),
     )
 
 

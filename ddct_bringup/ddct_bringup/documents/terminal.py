@@ -28,12 +28,18 @@ def print_document(document: Document, stream: TextIO | None = None) -> None:
     What is folded on the page, figures and meanings are left out.
     """
     stream = stream or sys.stdout
+    after_text = False
     for block in printed_blocks(document.content):
+        is_text = isinstance(block, Note)
+        if after_text and not is_text:
+            print(file=stream)
+        after_text = is_text
         if isinstance(block, Table):
             print_table(text_table(block, document.complete), stream)
         elif isinstance(block, Remarks):
-            for line in block.lines:
+            for line in [f'{block.title}:', *block.lines] if block.alarming else block.lines:
                 print_note(line, stream)
+            print(file=stream)
         else:
             print_note(block.text, stream)
             if block.command:
@@ -76,5 +82,5 @@ def text_table(table: Table, complete: str = '') -> text.Table:
 
 def _text(cell: Cell) -> str:
     unit = '' if cell.unit == PURE else f' {cell.unit}'
-    below = f' ({cell.below})' if cell.below else ''
+    below = f'; {cell.below}' if cell.below else ''
     return f'{cell.text}{unit}{below}'

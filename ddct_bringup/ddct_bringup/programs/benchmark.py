@@ -120,9 +120,8 @@ def _complaints(result: 'shell.Result') -> bool:
 
 def _show(result: 'shell.Result', options: argparse.Namespace) -> None:
     def show() -> None:
-        shell.print_result(result, shell.read_update_times(options.out))
-        for note in (*shell.notes_of(result), *shell.warnings_of(result)):
-            print(printable(note))
+        times = shell.read_update_times(options.out)
+        shell.print_document(shell.benchmark_document(result, times))
         print(options.out / PAGE, flush=True)
 
     show_and_write(options.json, shell.document_of(result, options.out), show)

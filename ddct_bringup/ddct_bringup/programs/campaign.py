@@ -60,7 +60,7 @@ def _campaign(argv: list[str]) -> int:
             resume=options.resume,
             stopped=lambda: bool(stops),
         )
-    shell.print_summary(done.summary, options.out)
+    shell.print_campaign(done.summary, options.out)
     print(done.rows)
     print(done.page, flush=True)
     return 0

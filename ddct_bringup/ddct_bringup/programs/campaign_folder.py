@@ -104,6 +104,6 @@ def _show(options: argparse.Namespace) -> int:
         options.folder, json=options.json, csv=options.csv, figure=options.figure
     )
     if STDOUT not in (options.json, options.csv):
-        shell.print_summary(summary, options.folder)
+        shell.print_campaign(summary, options.folder)
         print(options.folder / _PAGE)
     return 0

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """States, figures, gaps and dominance of rows that are made by hand."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,7 @@ import pytest
 
 from ddct_bringup.benchmark.case_rows import CaseRows
 from ddct_bringup.benchmark.cases import Cases
-from ddct_bringup.benchmark.report import printed
+from ddct_bringup.benchmark.report.judged_sections import spread_cells
 from ddct_bringup.benchmark.report.texts import dominance_lines
 from ddct_bringup.benchmark.update_times import read_update_times
 from ddct_bringup.campaign.keys import SCENARIO
@@ -204,11 +203,11 @@ def test_each_printed_quantile_is_that_of_its_own_quantity() -> None:
     values = {name: float(place) for place, name in enumerate(MAIN, 2) if name != 'response_s'}
     rows = rows_of(ours=values)
     (found,) = summary_of(rows).groups
-    shown = {name: printed.spread_cells(found, name) for name in MAIN}
+    shown: dict[str, Any] = {name: spread_cells(found.quantities, name) for name in MAIN}
     expected = {**values, 'response_s': 2.0}
-    assert {name: float(cells[0]) for name, cells in shown.items()} == expected
-    assert {cells[-1] for cells in shown.values()} == {'0'}
-    assert printed.spread_cells(replace(found, quantities={}), MAIN[0]) == ('-',) * 4
+    assert {name: float(cells[1].text) for name, cells in shown.items()} == expected
+    assert {cells[-1] for cells in shown.values()} == {0}
+    assert spread_cells({}, MAIN[0]) == (0, None, None, None, None)
 
 
 @pytest.mark.parametrize('text', ['{}', '[1]', '{"controllers": {"ls8": 2.0}}'])

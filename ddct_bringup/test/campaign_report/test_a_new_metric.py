@@ -42,7 +42,7 @@ def test_it_is_shown_and_names_the_metric_that_it_lacks(
     assert NEW.key not in summary.groups[0].quantities
     assert main(['show', str(finished)]) == 0
     printed = capsys.readouterr().out
-    assert f'results of another version, without {NEW.key}' in printed
+    assert f'Results of another version:\nwithout {NEW.key}\n' in printed
     assert (finished / RESULTS).read_bytes() == before
 
 

@@ -4,7 +4,6 @@
 
 import json
 import re
-from base64 import b64decode
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -13,12 +12,14 @@ from made_campaign import GRID, make_campaign
 from made_results import made_results
 from samples import sampled
 
+from ddct_bringup.campaign_report.document import PageParts, campaign_document
 from ddct_bringup.campaign_report.folder import (
     PAGE,
     SUMMARY,
-    campaign_page,
     write_campaign_page,
 )
+from ddct_bringup.documents.bokeh_charts import library
+from ddct_bringup.documents.page import html_page
 from ddct_bringup.evaluation.summarise import summary_of
 from ddct_bringup.evaluation.summary import SummaryFile
 from ddct_bringup.verdict.state import ENGAGED, INVALID
@@ -114,7 +115,7 @@ def test_invalid_runs_are_announced_and_failed_ones_are_named(page: Elements) ->
     assert f'1 run, such as run 11: {EVIL}' in page.text
     assert not {'evil', 'onload'} & page.names
     assert '2 not engaged' in page.text
-    data = json.loads(page.scripts[0])
+    data = json.loads(page.scripts[0])  # that of the maps
     states = [state for panel in data['maps']['maps'][0]['panels'] for state in panel['state']]
     assert (states.count('not_engaged'), states.count(INVALID), len(states)) == (4, 1, 12)
     assert 'ddct campaign replay' in data['replay']
@@ -122,8 +123,8 @@ def test_invalid_runs_are_announced_and_failed_ones_are_named(page: Elements) ->
 
 def test_the_figure_of_the_distributions_is_on_the_page(folder: Path) -> None:
     html = (folder / PAGE).read_text(encoding='utf-8')
-    (encoded,) = re.findall(r'src="data:image/svg\+xml;base64,([^"]+)"', html)
-    assert b'</svg>' in b64decode(encoded)
+    data = json.loads(re.findall(r'id="data">(.*?)</script>', html)[0])
+    assert {*data['roots']} > {'map-0', 'map-1', 'chart-0'}
 
 
 def test_the_keys_that_drive_failure_are_on_the_page_of_random_samples(tmp_path: Path) -> None:
@@ -147,7 +148,7 @@ def test_the_keys_that_drive_failure_are_on_the_page_of_random_samples(tmp_path:
 
 
 def test_the_page_needs_nothing_else(folder: Path) -> None:
-    html = (folder / PAGE).read_text(encoding='utf-8')
+    html = (folder / PAGE).read_text(encoding='utf-8').replace(library(), '')
     assert not re.search(r'(?:src|href)="(?!#|data:)', html)
     assert '://' not in html.replace('http://www.w3.org/2000/svg', '')
 
@@ -160,11 +161,11 @@ def test_text_from_a_campaign_is_escaped_on_the_page() -> None:
         controllers=[EVIL, EVIL],
     )
     facts = dict.fromkeys(('scenario', 'specification', EVIL), EVIL)
-    html = campaign_page(results, summary_of(results), EVIL, facts)
-    page = Elements(html)
+    document = campaign_document(summary_of(results), EVIL, PageParts(results, facts))
+    page = Elements(html_page(document))
     assert not {'evil', 'onload'} & page.names
     assert EVIL in page.text
-    data = json.loads(page.scripts[0])
+    data = json.loads(page.scripts[0])  # that of the maps
     assert data['maps']['groups'] == [f'{EVIL}, {EVIL}', f'{EVIL}, linear']
 
 

@@ -41,7 +41,7 @@ def test_the_terminal_and_the_page_name_the_missing_columns(
 ) -> None:
     assert main(['show', str(changed), '--figure', str(changed / 'wear.png')]) == 0
     printed = capsys.readouterr().out
-    assert f'results of another version, without {ABSENT}' in printed
+    assert f'Results of another version:\nwithout {ABSENT}\n' in printed
     assert 'Results of another version' in (changed / PAGE).read_text(encoding='utf-8')
 
 

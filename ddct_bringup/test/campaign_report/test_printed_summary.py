@@ -8,7 +8,9 @@ import pytest
 from in_this_process import in_this_process
 from made_results import made_results
 
-from ddct_bringup.campaign_report.printed_summary import summary_tables
+from ddct_bringup.campaign_report.document import campaign_document
+from ddct_bringup.documents.document import Table
+from ddct_bringup.documents.terminal import printed_blocks
 from ddct_bringup.evaluation.summarise import summary_of
 from ddct_bringup.programs.campaign import main
 
@@ -29,7 +31,7 @@ def test_the_summary_is_printed_at_the_end_and_the_paths_last(
     *_, results, page = printed.splitlines()
     assert (results, page) == (str(out / 'results.parquet'), str(out / 'report.html'))
     assert main(['show', str(out)]) == 0
-    tables = capsys.readouterr().out.rpartition('the bag of a run')[0]
+    tables = capsys.readouterr().out.rpartition('The bag of a run')[0]
     assert tables
     assert printed.startswith(tables)
     assert 'How often engagement fails' in tables
@@ -42,18 +44,18 @@ def test_words_are_aligned_to_the_left_and_numbers_to_the_right() -> None:
         {'peak_jerk_m_s3': [1.0, 2.0, 1.5, 2.5]},
         controllers=['pi', 'pi', 'ls8', 'ls8'],
     )
+    document = campaign_document(summary_of(results), 'again INDEX')
     aligned = {
-        table.title.split(' (')[0]: [
-            header for header, number in zip(table.headers, table.numbers, strict=False) if number
-        ]
-        for table in summary_tables(summary_of(results))
+        table.title: [column.title for column in table.columns if column.number]
+        for table in printed_blocks(document.content)
+        if isinstance(table, Table)
     }
     assert aligned['How often engagement fails'] == [
         *('failed', '95 % interval', 'runs', 'engaged', 'failed', 'invalid'),
     ]
     assert aligned['Engaged runs: quantiles with sign, CVaR and worst by magnitude'] == [
-        *('n', 'P5', 'P50', 'P95', 'CVaR', 'worst engaged', 'run', 'worst', 'run'),
+        *('n', 'P5', 'P50', 'P95', 'CVaR', 'worst engaged', 'run', 'worst failed', 'run'),
     ]
     assert aligned['Differences on the same cases, where both engaged'] == [
-        *('cases', 'P5', 'P50', 'P95'),
+        *('cases', 'P5', 'P50', 'P95', '95 % interval of P50'),
     ]

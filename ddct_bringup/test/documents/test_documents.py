@@ -69,8 +69,8 @@ def test_the_terminal_has_the_tables_with_reasons_remarks_and_commands() -> None
     stream = io.StringIO()
     print_document(document(), stream)
     text = stream.getvalue()
-    assert text.startswith('a line to know\nTimes\n')
-    assert re.search(r'pi +1\.25 +90\.0 \(of 10\)', text)
+    assert text.startswith('a line to know\n\nTimes\n')
+    assert re.search(r'pi +1\.25 +90\.0; of 10', text)
     assert re.search(r'mpc_<3> +- +-12\.5\*', text)
     assert '-  no run engaged' in text
     assert '*  of one run alone' in text
@@ -110,7 +110,7 @@ def test_a_notebook_has_the_tables_and_figures_of_the_document_by_their_titles()
     forms = given_by.table('Times')._repr_mimebundle_()
     assert '<td>mpc_&lt;3&gt;</td><td>-</td><td>-12.5*</td>' in forms['text/html']
     assert '<p>* in held out engaged: of one run alone</p>' in forms['text/html']
-    assert re.search(r'pi +1\.25 +90\.0 \(of 10\)', forms['text/plain'])
+    assert re.search(r'pi +1\.25 +90\.0; of 10', forms['text/plain'])
     assert given_by.table('folded').columns == COLUMNS
     picture = given_by.figure('t_a')._repr_mimebundle_()
     assert picture['image/png'][:4] == b'\x89PNG'

@@ -18,7 +18,7 @@ import pytest
 from by_schema import require_schema
 
 from ddct_bringup.campaign.conduct import RESULTS, SHARDS
-from ddct_bringup.campaign_report import folder
+from ddct_bringup.campaign_report import document
 from ddct_bringup.manifest.manifest import (
     MANIFEST,
     Manifest,
@@ -59,14 +59,14 @@ class Mine(TimedHandover):
 """
 
 
-DRAWN = folder._distributions
-"""The figure of the page of a campaign, where charts are left out."""
+DRAWN = document._charts
+"""The charts of the page of a campaign, where they are left out."""
 
 
 def leave_out_charts(patch: pytest.MonkeyPatch) -> None:
     """Draw no chart on pages of runs and campaigns, which takes most of the time of small ones."""
     patch.setattr('ddct_bringup.report.page.time_charts', lambda runs, page: [])
-    patch.setattr(folder, '_distributions', lambda *_: '')
+    patch.setattr(document, '_charts', lambda *_: iter(()))
 
 
 def make_runs(out: Path, controllers: str = 'pi,mpc3', *options: str) -> Path:

@@ -11,13 +11,13 @@ from functools import cache
 import pytest
 from made_results import made_results
 
-from ddct_bringup.campaign_report.printed_summary import summary_tables
+from ddct_bringup.campaign_report.document import campaign_document
+from ddct_bringup.documents.terminal import print_document
 from ddct_bringup.evaluation.summarise import summary_of
 from ddct_bringup.identification import identify
 from ddct_bringup.programs import benchmark, limit, reproduce, sweep
 from ddct_controllers.check import program as check_controller
 from ddct_controllers.workflows import design_program
-from ddct_plant.program.printed_table import print_tables
 
 SHORT = ('--set', 'duration_s=1.2', '--set', 'score_window_s=[0.6, 1.1]')
 
@@ -30,7 +30,7 @@ def _campaign() -> None:
         {'peak_jerk_m_s3': [float(number) for number in range(8)]},
         controllers=['pi', 'ls8'] * 4,
     )
-    print_tables(summary_tables(summary_of(results)))
+    print_document(campaign_document(summary_of(results), 'again INDEX'))
 
 
 def _sweep() -> None:

@@ -25,7 +25,7 @@ from verified import (
 )
 
 from ddct_bringup.campaign.conduct import RESULTS, SHARDS
-from ddct_bringup.campaign_report import folder
+from ddct_bringup.campaign_report import document as campaign_document
 from ddct_bringup.manifest.manifest import MANIFEST, read_manifest
 from ddct_bringup.programs import campaign
 from ddct_plant.files.yaml_text import dump_yaml
@@ -53,7 +53,7 @@ def test_the_files_of_a_campaign_are_as_their_schemas(whole: Path) -> None:
 def test_an_untouched_campaign_is_the_same_to_the_last_bit_wherever_it_is(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(folder, '_distributions', DRAWN)
+    monkeypatch.setattr(campaign_document, '_charts', DRAWN)
     whole = make_small_campaign(tmp_path / 'whole', 'mpc4')  # in no batch: a shard for each row
     code, document, errors = verified(copied(whole, tmp_path / 'there'), capfd, '--workers', '1')
     assert (code, 'ddct verify' in errors) == (0, False)  # progress is no error

@@ -26,17 +26,16 @@ if TYPE_CHECKING:
     from ddct_bringup.bag.recording import Recording
     from ddct_bringup.benchmark.cases import Cases
     from ddct_bringup.benchmark.judged import Judged
+    from ddct_bringup.benchmark.report.document import benchmark_document
     from ddct_bringup.benchmark.report.folder import document_of
     from ddct_bringup.benchmark.report.packaged import packaged_lines, packaged_tables
-    from ddct_bringup.benchmark.report.printed import print_result
-    from ddct_bringup.benchmark.report.texts import notes_of, warnings_of
     from ddct_bringup.benchmark.result_types import Result
     from ddct_bringup.benchmark.update_times import read_update_times
     from ddct_bringup.campaign.arrow_columns import table_csv
     from ddct_bringup.campaign.campaign import Campaign
     from ddct_bringup.campaign.spec import read_spec
     from ddct_bringup.campaign_report.distributions_chart import distributions_chart
-    from ddct_bringup.campaign_report.printed_summary import print_summary
+    from ddct_bringup.campaign_report.folder import print_campaign
     from ddct_bringup.campaign_report.texts import RULES
     from ddct_bringup.documents.chart_files import write_chart
     from ddct_bringup.documents.terminal import print_document

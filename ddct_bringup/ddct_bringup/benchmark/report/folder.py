@@ -9,10 +9,11 @@ from ddct_bringup.benchmark.conduct import JudgedRows, read_judged_rows
 from ddct_bringup.benchmark.file_names import PAGE, RESULT
 from ddct_bringup.benchmark.plan import RecordedBenchmark
 from ddct_bringup.benchmark.release import release_rows
-from ddct_bringup.benchmark.report.page import benchmark_page
+from ddct_bringup.benchmark.report.document import benchmark_document
 from ddct_bringup.benchmark.result import result_of
 from ddct_bringup.benchmark.result_types import Result, ResultWithTimes
 from ddct_bringup.benchmark.update_times import read_update_times
+from ddct_bringup.documents.page import html_page
 from ddct_bringup.manifest.manifest import finish_manifest
 from ddct_bringup.run.output_folder import locked_folders
 from ddct_plant.files.json_records import write_json
@@ -43,7 +44,8 @@ def write_result(out: Path, failed: Mapping[str, str]) -> Result:
     result = result_in(out, failed)
     with locked_folders(out):
         write_json(str(out / RESULT), result)
-        write_text(str(out / PAGE), benchmark_page(result, read_update_times(out)))
+        document = benchmark_document(result, read_update_times(out))
+        write_text(str(out / PAGE), html_page(document))
         finish_manifest(out)
     return result
 

@@ -12,7 +12,6 @@ from ddct_bringup.benchmark.case_rows import CaseRows
 from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.release import release_rows
 from ddct_bringup.benchmark.report import texts
-from ddct_bringup.benchmark.report.printed import spread_texts
 from ddct_bringup.benchmark.report.rules import (
     NO_GAIN,
     figures_that_count,
@@ -23,10 +22,11 @@ from ddct_bringup.campaign.keys import SCENARIO
 from ddct_bringup.evaluation.dominance import compare
 from ddct_bringup.evaluation.grouped_rows import GroupedRows
 from ddct_bringup.evaluation.quantities import MAIN
+from ddct_bringup.evaluation.spread import QuantitySummary
 from ddct_bringup.evaluation.summarise import summarise
 from ddct_bringup.evaluation.summary import GroupSummary, Summary
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_plant.program.table import Table, Weight, with_reasons
+from ddct_plant.program.table import UNDEFINED, Table, Weight, with_reasons
 
 _STATES = 'controller', 'engaged', 'other states'
 _HEADINGS = ('response s', 'jerk m/s^3', 'work kJ', 'A_w m/s^2', 'releases')
@@ -114,10 +114,23 @@ def _figure_rows(summary: Summary) -> Iterator[tuple[str, ...]]:
     """Yield P50, P95 and worst of each controller's figures, a row each."""
     for group in summary.groups:
         cells = [
-            spread_texts(group.quantities.get(key), form, factor) for key, form, factor in _FORMS
+            _spread_texts(group.quantities.get(key), form, factor) for key, form, factor in _FORMS
         ]
         for of, row in zip(('P50', 'P95', 'worst'), zip(*cells, strict=True), strict=True):
             yield group.controller, of, *row
+
+
+def _spread_texts(
+    found: QuantitySummary | None, form: str, factor: float = 1.0
+) -> tuple[str, str, str]:
+    """Return P50, P95 and worst of the successes, times a factor."""
+    if found is None or found.worst_engaged is None:
+        return UNDEFINED, UNDEFINED, UNDEFINED
+    values = found.quantiles.p50, found.quantiles.p95, found.worst_engaged.value
+    p50, p95, worst = (
+        UNDEFINED if value is None else f'{factor * value:{form}}' for value in values
+    )
+    return p50, p95, worst
 
 
 def _dominance(summary: Summary) -> Table:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from ddct_bringup.benchmark.result_types import JudgedResult, Result
 from ddct_bringup.campaign_report.texts import RULES as CAMPAIGN_RULES
 from ddct_bringup.campaign_report.texts import state_text
+from ddct_bringup.documents.document import Terms
 from ddct_bringup.evaluation.case_figures import FIGURES, LEVEL
 from ddct_bringup.evaluation.dominance import RELATIVE_DIFFERENCE, PairedComparison
 from ddct_bringup.evaluation.held_out_gaps import METHOD as GAP_METHOD
@@ -51,6 +52,11 @@ RULES = {
     f'{100.0 * LEVEL:g} % of benchmarks.',
 }
 """Definitions by term."""
+
+
+def terms(*names: str) -> Terms:
+    """Return the definitions of terms."""
+    return Terms({name: RULES[name] for name in names})
 
 
 def states_text(group: GroupSummary) -> str:

@@ -7,8 +7,7 @@ from functools import partial
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from ddct_bringup.benchmark.report.texts import figure_name
-from ddct_bringup.campaign_report.texts import p_text
+from ddct_bringup.benchmark.report.judged_sections import gaps_table
 from ddct_bringup.documents.document import (
     Block,
     Cell,
@@ -73,7 +72,7 @@ def _best(result: TuningResult, commands: PageCommands | None) -> Section:
         given(
             _use(commands) if commands else None,
             entries_table(result, entries),
-            _gaps(result),
+            gaps_table(result.gaps, 'figure of the best trial'),
             texts.terms('best', 'development', 'held out', 'gap'),
         ),
         key='best',
@@ -100,7 +99,7 @@ def entries_table(result: TuningResult, entries: Mapping[str, FrontEntry]) -> Ta
             Column(goal.title, goal.unit, goal.form, missing='no run has a value')
             for goal in goals
         ),
-        Column('engaged', '%', '.1f', weight=Weight.USEFUL),
+        Column('engaged', form='.1%', weight=Weight.USEFUL),
         Column('keeps all', number=False, weight=Weight.USEFUL),
     ]
     rows = [
@@ -118,28 +117,9 @@ def _values(result: TuningResult, figures: Figures) -> Row:
     return (
         *(figures.objectives[goal.name] for goal in result.objectives),
         *(figures.constraints[goal.name] for goal in result.constraints),
-        100.0 * (figures.engaged.value or 0.0),
+        figures.engaged.value,
         Cell('yes' if keeps else 'no', alarming=not keeps),
     )
-
-
-def _gaps(result: TuningResult) -> Table:
-    columns = [
-        Column('figure of the best trial', number=False, weight=_NAME, symbols=True),
-        Column('a held-out run is the worse one', '%', '.0f', missing='too few runs have a value'),
-        Column('p', missing='too few runs have a value'),
-        Column('beyond chance', number=False),
-    ]
-    rows = [
-        (
-            figure_name(gap.name),
-            None if gap.worse is None else 100.0 * gap.worse,
-            None if gap.p_value is None else p_text(gap.p_value),
-            Cell('yes' if gap.differs else 'no', alarming=gap.differs),
-        )
-        for gap in result.gaps
-    ]
-    return Table('Development beside held out', columns, rows)
 
 
 def _front(result: TuningResult, study: 'Study | None') -> Section:
