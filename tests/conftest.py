@@ -15,6 +15,7 @@ from support.processes import TEST_ID, Programs, note_processes, processes_left
 from ddct_bringup.processes.shared_memory import remove_dead_segments
 from ddct_bringup.run.plan import RunPlan
 from ddct_plant.graph.domain import own_domain
+from ddct_plant.graph.half_made_ports import remove_half_made_ports
 
 if TYPE_CHECKING:
     from support.in_process_graph import InProcessGraph
@@ -51,7 +52,8 @@ def isolated(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.delenv('ROS_DOMAIN_ID', raising=False)
     note_processes()
     handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
-    with own_domain():
+    with own_domain() as domain:
+        remove_half_made_ports(domain)  # of nodes that tests before have killed
         yield
     for number, handler in handlers.items():
         signal.signal(number, handler)

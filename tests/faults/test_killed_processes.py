@@ -20,6 +20,7 @@ from waiting import wait_until
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.processes.shared_memory import SHARED_MEMORY
 from ddct_bringup.programs import score
+from ddct_bringup.run.execution import execute
 from ddct_plant.graph.domain import own_domain
 
 SHIFT = {'scenario': 'upshift'}
@@ -163,6 +164,20 @@ def _left_without_owner(segments: Iterable[str], there: set[str]) -> set[str]:
     """
     left = {segment for segment in segments if any(segment in name for name in there)}
     return {segment for segment in left if not has_owner(segment)}
+
+
+def test_a_graph_runs_in_a_domain_where_a_node_was_killed_while_it_made_a_port(
+    tmp_path: Path,
+) -> None:
+    first = 7400 + 250 * int(os.environ['ROS_DOMAIN_ID'])
+    for number in (first + 10, first + 11):
+        port = SHARED_MEMORY / f'fastrtps_port{number}'
+        port.unlink(missing_ok=True)
+        port.write_bytes(bytes(52400))
+        os.utime(port, (0, 0))
+    whole = plan(duration_s=0.2)
+    execute(whole, tmp_path)
+    assert read_bag(tmp_path).trajectory.sha256() == expected(whole).sha256()
 
 
 def test_bringup_removes_the_shared_memory_of_dead_nodes_and_of_no_live_one(

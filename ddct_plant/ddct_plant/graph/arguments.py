@@ -12,6 +12,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.graph.domain import discover_locally, require_domain, require_ros
+from ddct_plant.graph.half_made_ports import remove_half_made_ports
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.qos import QOS_OVERRIDES
 
@@ -44,7 +45,7 @@ def init_ros(arguments: Sequence[str] | None, context: Context | None = None) ->
     `require_ros`.
     """
     require_ros()
-    require_domain()
+    remove_half_made_ports(require_domain() or 0)
     discover_locally()
     try:
         rclpy.init(
