@@ -88,22 +88,21 @@ def fit(problem: Problem, start: Values) -> Fit:
 
 
 def search(base: Scenario, progress: Callable[[str], None]) -> list[Fit]:
-    """
-    Return every fit: for each window end from two starts, then from the others for the best end.
-
-    The window ends are tenths of a second from the end of the slowest printed engagement to the
-    end of the run.
-    """
-    slowest = base.control_start_s + max(ROW_OF[row].engagement_time_s for row in ROWS)
-    tenths = range(math.ceil(10.0 * slowest), round(10.0 * base.duration_s) + 1)
+    """Return every fit: for each window end from two starts, then from the others for the best."""
     fits = []
-    for end in tenths:
-        progress(f'score window to {end / 10.0:g} s')
-        problem = Problem(base, end / 10.0)
-        fits += [fit(problem, start) for start in STARTS[:2]]
+    for end in window_ends(base):
+        progress(f'score window to {end:g} s')
+        fits += [fit(Problem(base, end), start) for start in STARTS[:2]]
     chosen = lowest_stable(fits).problem
     progress(f'other starts, score window to {chosen.window_end_s:g} s')
     return fits + [fit(chosen, start) for start in STARTS[2:]]
+
+
+def window_ends(base: Scenario) -> list[float]:
+    """Return tenths of a second from the slowest printed engagement to the end of the run."""
+    slowest = base.control_start_s + max(ROW_OF[row].engagement_time_s for row in ROWS)
+    tenths = range(math.ceil(10.0 * slowest), round(10.0 * base.duration_s) + 1)
+    return [end / 10.0 for end in tenths]
 
 
 def lowest_stable(fits: Sequence[Fit]) -> Fit:
