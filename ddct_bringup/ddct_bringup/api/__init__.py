@@ -22,6 +22,7 @@ from ddct_plant.base.late_names import late_names
 if TYPE_CHECKING:
     from ddct_bringup.api.benchmarks import BenchmarkResults, benchmark
     from ddct_bringup.api.campaigns import CampaignResults, campaign, read_campaign, sweep
+    from ddct_bringup.api.documents import document
     from ddct_bringup.api.figures import ThesisDrawing, campaign_figure, figure, thesis_figure
     from ddct_bringup.api.result import Run, table
     from ddct_bringup.api.run_and_load import compare, load, run

@@ -9,6 +9,7 @@ from ddct_bringup.campaign.plan import RecordedCampaign
 from ddct_bringup.campaign_report import texts
 from ddct_bringup.campaign_report.document import PageParts, campaign_document
 from ddct_bringup.campaign_report.reading import grouped_rows, read_table
+from ddct_bringup.documents.document import Document
 from ddct_bringup.documents.page import html_page
 from ddct_bringup.documents.terminal import print_document
 from ddct_bringup.evaluation.summarise import summary_of
@@ -29,11 +30,7 @@ def write_campaign_page(folder: Path) -> Summary:
 
     Raise DdctError for a folder without a finished campaign, and when a file cannot be written.
     """
-    recorded = RecordedCampaign.read(folder)
-    results = grouped_rows(recorded, read_table(folder, recorded))
-    summary = summary_of(results)
-    replay = texts.replay_command('.', 'INDEX')
-    document = campaign_document(summary, replay, PageParts(results, facts_of(recorded)))
+    summary, document = _summarised(folder, '.')
     with locked_folders(folder):
         write_json(str(folder / SUMMARY), SummaryFile.of(summary))
         write_text(str(folder / PAGE), html_page(document))
@@ -41,6 +38,20 @@ def write_campaign_page(folder: Path) -> Summary:
         if (folder / MANIFEST).exists():  # else it is a part of another result
             finish_manifest(folder)
     return summary
+
+
+def campaign_in(folder: Path) -> Document:
+    """Return the document of the campaign in a folder; raise DdctError without a finished one."""
+    return _summarised(folder, str(folder))[1]
+
+
+def _summarised(folder: Path, named: str) -> tuple[Summary, Document]:
+    """Return the summary and the document of a campaign; commands have the `named` folder."""
+    recorded = RecordedCampaign.read(folder)
+    results = grouped_rows(recorded, read_table(folder, recorded))
+    summary = summary_of(results)
+    replay = texts.replay_command(named, 'INDEX')
+    return summary, campaign_document(summary, replay, PageParts(results, facts_of(recorded)))
 
 
 def print_campaign(summary: Summary, folder: Path) -> None:

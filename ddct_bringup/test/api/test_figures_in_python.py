@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from ddct_bringup.api import DdctError, ParameterError, campaign, campaign_figure, thesis_figure
+from ddct_bringup.api import (
+    DdctError,
+    ParameterError,
+    campaign,
+    campaign_figure,
+    document,
+    thesis_figure,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -37,6 +44,8 @@ def test_a_figure_that_cannot_be_drawn_or_does_not_exist_is_refused(number: str,
 def test_the_figure_of_a_campaign_has_a_curve_of_each_controller(tmp_path: Path) -> None:
     campaign(SPEC, tmp_path / 'out', workers=1)
     assert {'pi', 'ls8'} <= curves(campaign_figure(tmp_path / 'out'))
+    shown = document(tmp_path / 'out').figure('Distributions')._repr_mimebundle_()
+    assert shown['image/png'][:4] == b'\x89PNG'
 
 
 def test_the_figure_of_a_folder_without_a_campaign_is_refused(tmp_path: Path) -> None:

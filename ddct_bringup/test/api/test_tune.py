@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from small_tuning import CONTENT, leave_out_pictures
 
-from ddct_bringup.api import run, tune
+from ddct_bringup.api import document, run, tune
 
 pytestmark = pytest.mark.slow
 
@@ -23,5 +23,7 @@ def test_the_front_and_the_trials_are_tables(
     name = next(iter(CONTENT['objectives']))
     assert best[f'development.{name}'] == found.trials.loc[best.name, name]
     assert run(str(found.best), duration=0.7).valid
+    (first, *_) = document(tmp_path / 'out').table('The best trial, and before').rows
+    assert first
     again = tune('pi', {**CONTENT, 'trials': 10}, tmp_path / 'out', workers=1, resume=True)
     assert again.front.equals(found.front)

@@ -4,10 +4,11 @@
 
 from pathlib import Path
 
+import pandas
 import pytest
 from small_benchmark import use_small_release
 
-from ddct_bringup.api import DdctError, benchmark
+from ddct_bringup.api import DdctError, benchmark, document
 from ddct_bringup.benchmark.file_names import RESULT
 from ddct_bringup.evaluation.quantities import MAIN
 from ddct_plant.files.json_records import json_text
@@ -42,8 +43,11 @@ def test_the_table_has_the_shares_and_medians_of_the_result_in_its_folder(
             row = found.table.loc[each.controller]
             assert row[f'{part}.success'] == each.engaged.value
             for name in MAIN:
-                assert row[f'{part}.{name}'] == each.quantities[name].quantiles.p50
+                median = each.quantities[name].quantiles.p50
+                shown = row[f'{part}.{name}']
+                assert pandas.isna(shown) if median is None else shown == median
     assert found.page.is_file()
+    assert document(tmp_path / 'mine').title in found.page.read_text(encoding='utf-8')
 
 
 def test_an_unknown_controller_is_refused_before_a_folder_is_made(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ import pyarrow.parquet as parquet
 import pytest
 from made_campaign import GRID, leave_out_figure, make_campaign, seal
 
-from ddct_bringup.api import DdctError, read_campaign
+from ddct_bringup.api import DdctError, document, read_campaign
 from ddct_bringup.campaign.conduct import RESULTS
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.campaign_report.folder import PAGE, SUMMARY
@@ -59,6 +59,11 @@ def test_a_data_frame_has_a_row_per_run_and_comes_with_the_summary(folder: Path)
     assert failed.wear_gain.unique().tolist() == [0.8]
     assert [each.failed.count for each in summary.groups] == [2, 2]
     assert table['engagement_time_s'].dtype == float
+
+
+def test_a_notebook_has_the_tables_of_the_page(folder: Path) -> None:
+    often = document(folder).table('How often engagement fails')
+    assert [row[3] for row in often.rows] == [6, 6]
 
 
 def test_show_prints_the_tables_and_writes_summary_and_page(

@@ -13,10 +13,11 @@ from ddct_bringup.benchmark.report.document import benchmark_document
 from ddct_bringup.benchmark.result import result_of
 from ddct_bringup.benchmark.result_types import Result, ResultWithTimes
 from ddct_bringup.benchmark.update_times import read_update_times
+from ddct_bringup.documents.document import Document
 from ddct_bringup.documents.page import html_page
 from ddct_bringup.manifest.manifest import finish_manifest
 from ddct_bringup.run.output_folder import locked_folders
-from ddct_plant.files.json_records import write_json
+from ddct_plant.files.json_records import read_json, write_json
 from ddct_plant.files.output_file import write_text
 
 _NOTHING: Mapping[str, str] = {}
@@ -48,6 +49,12 @@ def write_result(out: Path, failed: Mapping[str, str]) -> Result:
         write_text(str(out / PAGE), html_page(document))
         finish_manifest(out)
     return result
+
+
+def benchmark_in(out: Path) -> Document:
+    """Return the document of the benchmark in a folder; raise DdctError without a finished one."""
+    result = read_json(Result, out / RESULT, advice='finish the benchmark')
+    return benchmark_document(result, read_update_times(out))
 
 
 def document_of(result: Result, out: Path) -> ResultWithTimes:

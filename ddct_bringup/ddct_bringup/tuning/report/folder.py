@@ -5,6 +5,7 @@
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from ddct_bringup.documents.document import Document
 from ddct_bringup.documents.page import html_page
 from ddct_bringup.manifest.code import code_digest
 from ddct_bringup.manifest.manifest import finish_manifest
@@ -27,7 +28,7 @@ from ddct_bringup.tuning.tuned_files import write_tuned_files
 from ddct_bringup.tuning.tuned_names import PAGE, RESULT
 from ddct_bringup.tuning.tuning import Tuning
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.json_records import write_json
+from ddct_plant.files.json_records import read_json, write_json
 from ddct_plant.files.output_file import write_text
 from ddct_plant.files.yaml_text import dump_yaml
 from ddct_plant.program.command_line import package_version
@@ -70,6 +71,14 @@ def write_tuning(
         write_text(str(out / PAGE), html_page(document))
         finish_manifest(out)
     return result
+
+
+def tuning_in(out: Path) -> Document:
+    """Return the document of the tuning in a folder; raise DdctError without a finished one."""
+    tuning = RecordedTuning.read(out).tuning(out)
+    result = read_json(TuningResult, out / RESULT, advice='finish the tuning')
+    study = TuningStudy(tuning.spec, tuning.present, out)
+    return tuning_document(result, study.study, PageCommands.of(tuning, out), _facts(tuning))
 
 
 def _facts(tuning: Tuning) -> dict[str, str]:
