@@ -40,11 +40,11 @@ def pytest_unconfigure(config: pytest.Config) -> None:
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """
-    Put the files with slow tests first, so that none is left to one worker at the end.
+    Put the files with slow tests and a browser first: none is left to one worker at the end.
 
     That needs `--no-loadscope-reorder`: else pytest-xdist begins with the files of most tests.
     """
-    slow = {item.path for item in items if item.get_closest_marker('slow')}
+    slow = {item.path for item in items if any(map(item.get_closest_marker, ('slow', 'browser')))}
     items.sort(key=lambda item: (item.path not in slow, item.path))
 
 

@@ -136,6 +136,7 @@ def contents() -> Iterator[tuple[str, dict[str, Any]]]:
             yield name, {**varied, 'grid': {key: [value]}}
 
 
+@pytest.mark.nightly
 def test_those_of_a_campaign_are_listed_and_each_file_is_in_its_digest(place: Path) -> None:
     found, in_digest = set(), set()
     for key, content in contents():
@@ -146,6 +147,7 @@ def test_those_of_a_campaign_are_listed_and_each_file_is_in_its_digest(place: Pa
     assert found == in_digest == listed('a campaign')
 
 
+@pytest.mark.nightly
 def test_those_of_a_scenario_a_car_and_a_drive_are_listed(place: Path) -> None:
     found = set()
     bases = {'scenario': {'car': 'c635', 'drive': 'launch'}, 'car': {}, 'drive': {}}

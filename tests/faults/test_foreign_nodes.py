@@ -130,7 +130,7 @@ def test_a_topic_of_another_type_is_named(graph_of: GraphOf) -> None:
     ('mode', 'unnamed_calls', 'at_s'),
     [
         ('lockstep', 3, 3 * CHECK_S),  # the run is over at once, and the first look with it
-        ('lockstep', 10**6, CHECK_S + NAMING_S),
+        pytest.param('lockstep', 10**6, CHECK_S + NAMING_S, marks=pytest.mark.nightly),
         ('realtime', 1, CHECK_S + OPEN_S),
     ],
 )

@@ -11,6 +11,7 @@ from ddct_bringup.programs.compare import main as compare
 from ddct_bringup.programs.verify import main as verify
 
 
+@pytest.mark.nightly
 def test_a_result_with_an_fmu_is_verified_without_the_file_it_was_made_from(
     folder: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

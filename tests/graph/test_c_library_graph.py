@@ -102,6 +102,7 @@ def test_an_interruption_ends_the_process_of_all_nodes_and_what_it_has_recorded_
     assert not processes_left()
 
 
+@pytest.mark.nightly
 @pytest.mark.compiler
 def test_the_exported_mpc_run_back_through_the_graph_is_that_of_python(tmp_path: Path) -> None:
     original = plan('mpc3')

@@ -30,6 +30,7 @@ def test_a_relative_file_gives_the_same_bytes_in_one_process_as_headless(
     assert not any(b'any_name' in content for content in bags[0].values())
 
 
+@pytest.mark.nightly
 def test_the_class_in_a_relative_python_file_gives_the_same_bytes_in_every_layout(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

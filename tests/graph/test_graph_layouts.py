@@ -13,7 +13,10 @@ from support.runs import LAYOUTS, bag_bytes, expected, plan, record
     ('controller', 'wear_gain', 'changes', 'layouts'),
     [
         ('ls8', 1.0, (), (*LAYOUTS, 'processes')),
-        ('pi', 0.7, ('load.slope_rad=0.05', 'actuator.delay_s=0.013'), LAYOUTS[1:]),
+        pytest.param(
+            *('pi', 0.7, ('load.slope_rad=0.05', 'actuator.delay_s=0.013'), LAYOUTS[1:]),
+            marks=pytest.mark.nightly,
+        ),
     ],
     ids=['repeated', 'worn clutch, later actuator, uphill'],
 )

@@ -94,6 +94,7 @@ def test_control_nodes_find_no_true_value_in_their_parameters_and_objects(
         assert not found_in([each.value for each in parameters], values), node.get_name()
 
 
+@pytest.mark.nightly
 def test_a_controller_in_a_process_of_its_own_finds_no_value_of_the_case(tmp_path: Path) -> None:
     settings = settings_with(UNKNOWN_IN_A_SHIFT, 'upshift', duration_s=0.5)
     values = true_values(settings)

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
+from samples import sampled
 from support.complaints import assert_one_line
 from support.nodes_by_hand import MODULES, RUN, finish_nodes, start_nodes
 from support.processes import Program, Programs, ros_arguments
@@ -56,7 +57,7 @@ def test_a_driveline_beside_another_is_refused_and_disturbs_nothing(programs: Pr
     first.stop()
 
 
-@pytest.mark.parametrize('layout', [[], ['--single-process']])
+@pytest.mark.parametrize('layout', sampled([['--single-process'], []], every=2))
 def test_a_bringup_beside_another_in_one_domain_is_refused_and_the_first_goes_on(
     programs: Programs, tmp_path: Path, layout: list[str]
 ) -> None:

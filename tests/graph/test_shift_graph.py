@@ -52,6 +52,7 @@ def test_every_layout_leaves_the_same_bytes_and_the_headless_trajectory(
     assert trajectory.off_going_clutch_phase[-1] == 0.0
 
 
+@pytest.mark.nightly
 def test_controller_and_handover_in_files_shift_in_the_graph_as_headless(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

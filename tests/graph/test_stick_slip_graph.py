@@ -33,7 +33,7 @@ OVER_REVVED = (
 @pytest.mark.parametrize(
     ('controller', 'changes', 'layouts'),
     [
-        ('ls8', (), LAYOUTS),
+        pytest.param('ls8', (), LAYOUTS, marks=pytest.mark.nightly),
         ('pi', LAUNCH, LAYOUTS[1:]),
     ],
     ids=['thesis', 'launch'],

@@ -54,6 +54,7 @@ def test_a_run_of_the_graph_is_verified_in_its_mode(
     assert f'{bag}: altered' in capfd.readouterr().err
 
 
+@pytest.mark.nightly
 def test_a_compared_run_that_failed_in_the_graph_fails_again(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

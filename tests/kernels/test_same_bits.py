@@ -29,12 +29,14 @@ def test_every_process_has_the_stored_bits(usual: Hashes) -> None:
     assert usual.as_stored() in (usual.trajectories, None)
 
 
+@pytest.mark.nightly
 def test_fewer_features_of_the_processor_change_no_bit(usual: Hashes) -> None:
     fewer = hashes_with(SAMPLE, NPY_DISABLE_CPU_FEATURES=' '.join(FEATURES))
     assert usual.arithmetic == fewer.arithmetic
     assert usual.trajectories == fewer.trajectories
 
 
+@pytest.mark.nightly
 def test_another_kernel_that_the_environment_names_has_other_bits(usual: Hashes) -> None:
     other = hashes_with(SAMPLE, **{KERNEL: 'Nehalem'})
     assert other.arithmetic.kernel == 'Nehalem'

@@ -286,6 +286,7 @@ def test_control_start_and_window_of_the_drive_are_those_of_the_column_map(
     assert (found.control_start_s, found.score_window_s) == times
 
 
+@pytest.mark.nightly
 def test_control_start_of_the_drive_may_be_set(folder: Path) -> None:
     assert identify(folder, '--out', str(folder / 'mine'), '--set', 'control_start_s=0.7') == 0
     found = written(folder / 'mine')

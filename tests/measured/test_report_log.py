@@ -139,6 +139,7 @@ def test_a_log_and_a_run_lie_over_each_other(
     assert len(figures) == 2 and figures[0] == figures[1]
 
 
+@pytest.mark.nightly
 def test_other_times_of_a_log_are_named_at_the_top(folder: Path) -> None:
     (folder / 'late.yaml').write_text(MAP.replace('control_start_s: 0.6', 'control_start_s: 0.7'))
     text = visible(page_of(folder, 'drive.csv', 'runs', columns='late.yaml'))

@@ -77,6 +77,7 @@ def test_the_gpl_is_found_and_the_lgpl_is_not() -> None:
     assert not is_gpl(of(Classifier=lesser))
 
 
+@pytest.mark.nightly
 @pytest.mark.process
 def test_the_product_runs_and_designs_without_it() -> None:
     """python-control takes slycot wherever it is installed, so it is hidden here."""

@@ -49,6 +49,7 @@ def test_the_example_controller_runs_in_every_layout_with_the_same_bytes(tmp_pat
     assert bags[0] == bags[1] == bags[2]
 
 
+@pytest.mark.nightly
 @pytest.mark.usefixtures('example')
 def test_bringup_lists_and_runs_the_example_controller(
     capfd: pytest.CaptureFixture[str], tmp_path: Path
@@ -127,7 +128,7 @@ def test_a_controller_that_cannot_be_built_is_named(name: str, words: list[str])
     ('layout', 'name', 'words'),
     [
         (HEADLESS, 'not_a_number', 'torque at step 60 is nan'),
-        (HEADLESS, 'infinite', 'torque at step 60 is inf'),
+        pytest.param(HEADLESS, 'infinite', 'torque at step 60 is inf', marks=pytest.mark.nightly),
         (HEADLESS, 'bare_number', 'float'),
         (HEADLESS, 'text', "'12.5'"),
         (HEADLESS, 'bad_status', "status at step 60 is (('iterations', 3),)"),

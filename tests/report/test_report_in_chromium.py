@@ -73,7 +73,7 @@ def launch(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize(
-    ('width', 'scheme'), sampled([(390, 'dark'), (1920, 'dark'), (1280, 'light')], every=2)
+    ('width', 'scheme'), sampled([(390, 'dark'), (1920, 'dark'), (1280, 'light')], every=3)
 )
 def test_the_page_draws_every_chart_without_error_or_request(
     page: Path, width: int, scheme: str, visit: Visitor
@@ -107,6 +107,7 @@ AREAS = """Bokeh.documents[0].roots().find((chart) => chart.name === 'C_m').rend
   .filter((item) => item.tags[0]?.area)"""
 
 
+@pytest.mark.nightly
 def test_a_yardstick_has_its_star_and_hollow_point_and_the_withheld_torque_its_shade(
     launch: Path, visit: Visitor
 ) -> None:
@@ -213,6 +214,7 @@ def test_a_run_is_switched_off_in_all_charts(page: Path, visit: Visitor) -> None
     assert visited.errors == []
 
 
+@pytest.mark.nightly
 def test_the_time_axis_is_one_for_all_charts(page: Path, visit: Visitor) -> None:
     window = "document.querySelectorAll('[data-range]')[1].click()"
     whole = "document.querySelectorAll('[data-range]')[0].click()"
@@ -289,6 +291,7 @@ def test_labels_of_the_pareto_view_cover_neither_each_other_nor_a_dot(
     assert visited.errors == []
 
 
+@pytest.mark.nightly
 def test_labels_of_the_pareto_view_stay_within_it_where_they_have_room(
     page: Path, visit: Visitor
 ) -> None:
@@ -311,6 +314,7 @@ def test_labels_of_the_pareto_view_stay_within_it_where_they_have_room(
     assert visited.errors == []
 
 
+@pytest.mark.nightly
 def test_paper_gets_light_charts_even_from_a_dark_page(page: Path, visit: Visitor) -> None:
     listen = """addEventListener('beforeprint', () => {
       const lines = window.light.map((colour) => parseInt(colour.slice(1), 16));

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`least_jerk` in the packaged scenarios: locks, jerk beside the floor, guards, estimates."""
 
+import itertools
 from functools import cache
 
 import numpy as np
@@ -37,8 +38,15 @@ def locked(run):
     return run.clutch_phase == PHASES.index(LOCKED)
 
 
-@pytest.mark.parametrize('wear_gain', [0.7, 1.0, 1.3])
-@pytest.mark.parametrize('scenario', [*LAUNCHES, 'thesis_sticking', 'upshift', 'upshift_2_3'])
+@pytest.mark.parametrize(
+    ('scenario', 'wear_gain'),
+    sampled(
+        itertools.product(
+            [*LAUNCHES, 'thesis_sticking', 'upshift', 'upshift_2_3'], [1.3, 0.7, 1.0]
+        ),
+        every=2,
+    ),
+)
 def test_it_locks_and_stays_locked(scenario, wear_gain):
     """The hill with a wear gain of 1.3 stalls the engine under every other controller."""
     settings, run = run_of(scenario, wear_gain)

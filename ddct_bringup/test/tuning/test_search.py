@@ -41,6 +41,7 @@ def searched(spec: TuningSpec, batches: int) -> list[float]:
     return gains
 
 
+@pytest.mark.nightly
 def test_later_trials_stay_at_the_limit_of_a_constraint() -> None:
     constraints = {'engaged': {'at_least': 0.9}, 'peak_jerk_m_s3': {'at_most': 5.0}}
     late = searched(tuning(constraints=constraints).spec, 12)[-4 * BATCH :]

@@ -85,6 +85,7 @@ def test_every_edit_with_its_digest_is_found(finished: Path, tmp_path: Path) -> 
     }
 
 
+@pytest.mark.nightly
 def test_an_edited_search_seed_is_found(finished: Path, tmp_path: Path) -> None:
     def other_seed(content: dict[str, Any]) -> None:
         content['plan']['spec']['seed'] += 1

@@ -85,6 +85,7 @@ def test_a_design_that_meets_its_specifications_is_written(tmp_path, capsys):
     assert load_designed(str(tmp_path / 'mine.yaml')).provenance['lacks'] == []
 
 
+@pytest.mark.nightly
 def test_specifications_that_are_not_met_are_an_error_also_without_a_file(capsys):
     options = ['h-infinity', '--rise-time', '0.4', '--overshoot', '10']
     assert main(options) == 1

@@ -5,6 +5,7 @@
 import numpy as np
 import pytest
 from refusals import refused
+from samples import sampled
 
 from ddct_controllers.design.analysis.loops import sampled_loop
 from ddct_controllers.design.loop_shaping.candidates import Candidates
@@ -42,11 +43,16 @@ def independent_figures(controller: FactoredTransferFunction) -> tuple[float, fl
     [
         (0.6, 0.14, 1, 'networks'),
         (0.25, 0.14, 1, 'placement'),
-        (0.3, 0.08, 1, 'placement'),
-        (1.0, 0.05, 1, 'networks'),
-        (0.15, 0.20, 1, 'placement'),
-        (0.6, 0.14, 2, 'networks'),
-        (0.6, 0.14, 0, 'placement'),
+        *sampled(
+            [
+                (0.6, 0.14, 2, 'networks'),
+                (0.3, 0.08, 1, 'placement'),
+                (1.0, 0.05, 1, 'networks'),
+                (0.15, 0.20, 1, 'placement'),
+                (0.6, 0.14, 0, 'placement'),
+            ],
+            every=4,
+        ),
     ],
 )
 def test_specifications_are_met_in_the_loop_as_it_runs(
