@@ -78,6 +78,7 @@ setup(
         'dask': ['distributed'],
         'gym': ['gymnasium'],
         'live': ['foxglove-sdk'],
+        'mdf': ['asammdf'],
         'test': ['pytest'],
         'tune': ['optuna'],
     },

@@ -257,7 +257,7 @@ def test_a_hole_in_the_log_is_reported_and_a_log_needs_its_map(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert score.main([str(folder / 'drive.csv')]) == 1
-    assert 'a CSV log needs a column map: give --columns FILE' in capsys.readouterr().err
+    assert 'the log needs a column map: give --columns FILE' in capsys.readouterr().err
     lines = (folder / 'drive.csv').read_text().splitlines(keepends=True)
     (folder / 'drive.csv').write_text(''.join([*lines[:200], *lines[250:]]))
     run = scored(folder)

@@ -51,6 +51,7 @@ FILES = {
     'ddct_bringup/identification/from_log/car_of_log.py': 'car, YAML',
     'ddct_bringup/identification/from_log/drive_of_log.py': 'drive, YAML',
     'ddct_bringup/logs/columns.py': 'column map, YAML',
+    'ddct_bringup/logs/mat_source.py': 'structures of a MAT file',
     'ddct_plant/scenario/case.py': 'options --case, and files of a case, YAML',
     'ddct_plant/scenario/content.py': 'scenario, YAML',
     'ddct_plant/scenario/csv_profiles.py': 'profiles of a scenario, YAML and CSV',

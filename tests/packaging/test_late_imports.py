@@ -20,9 +20,9 @@ from ddct_plant.program.command_line import programs
 ROOT = Path(__file__).resolve().parents[2]
 
 HEAVY = {
-    *('bokeh', 'clarabel', 'control', 'daqp', 'distributed', 'fmpy', 'foxglove', 'gymnasium'),
-    *('jinja2', 'matplotlib', 'mcap', 'numpy', 'optuna', 'osqp', 'pandas', 'pyarrow', 'rclpy'),
-    *('cffi', 'mcap_ros2', 'multiprocessing', 'rosbags', 'scipy', 'zstandard'),
+    *('asammdf', 'bokeh', 'clarabel', 'control', 'daqp', 'distributed', 'fmpy', 'foxglove'),
+    *('gymnasium', 'jinja2', 'matplotlib', 'mcap', 'numpy', 'optuna', 'osqp', 'pandas'),
+    *('cffi', 'mcap_ros2', 'multiprocessing', 'pyarrow', 'rclpy', 'rosbags', 'scipy', 'zstandard'),
 }
 """Packages that take from 10 ms to seconds to import."""
 

@@ -39,6 +39,7 @@ NOT_RUN_HERE = {
     'python docs/examples/learn_launch.py': 'takes a minute; tests/nightly/docs learns for less',
     'ddct compare --controllers pi,ls8,learnt.py': 'needs what that writes',
     'ddct benchmark learnt': 'needs what that writes',
+    'ddct identify --from drive.mf4': 'needs a log of a bus; tests/nightly/measured records one',
     'ddct verify results/mine': 'needs that benchmark',
     'ddct tune': 'takes minutes; ddct_bringup/test/tuning runs small ones',
     'ddct compare --controllers pi,tuned/pi/best.yaml': 'needs that tuning',

@@ -16,6 +16,7 @@ from ddct_bringup.bag.run_facts import MEASURED, RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.logs.columns import QUANTITIES, TIME, ColumnMap
 from ddct_bringup.logs.log import MeasuredLog, read_log
+from ddct_bringup.logs.sources import LOGS
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import options_of, require_known
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
@@ -40,21 +41,21 @@ _MORE_SIGNALS = {
 
 def is_log(path: Path) -> bool:
     """Return whether a path is a log of another tool rather than a bag."""
-    return path.suffix.lower() == '.csv'
+    return path.suffix.lower() in LOGS
 
 
 def read_recording(path: Path, columns: ColumnMap | None) -> Recording:
-    """Return the recording of a bag, or of a CSV log by its column map; raise DdctError."""
+    """Return the recording of a bag, or of a log by its column map; raise DdctError."""
     if not is_log(path):
         return read_bag(path)
     if columns is None:
-        raise DdctError(f'{path}: a CSV log needs a column map: give --columns FILE')
+        raise DdctError(f'{path}: the log needs a column map: give --columns FILE')
     return read_measured_run(path, columns)
 
 
 def read_measured_run(path: Path, columns: ColumnMap) -> Recording:
     """
-    Return a CSV log as a recording on the grid of 10 ms.
+    Return a log as a recording on the grid of 10 ms.
 
     Samples closer than 5 ms are averaged over the 10 ms around each instant; others are
     interpolated or held, as the column map sets. Quantities that the log lacks are NaN, with the

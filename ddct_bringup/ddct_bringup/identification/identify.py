@@ -38,7 +38,8 @@ examples:
   ddct identify --json parameters.json
   ddct identify --as-printed    (334.4, an erratum: nothing fits; exit code 1)
   ddct identify --from runs/demo/pi --check runs/demo/ls8 --out mycar
-  ddct identify --from drive.csv --columns columns.yaml --fix total_ratio"""
+  ddct identify --from drive.csv --columns columns.yaml --fix total_ratio
+  ddct identify --from drive.mf4 --dbc car.dbc --guess columns.yaml"""
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -64,11 +65,22 @@ def _run(argv: list[str]) -> int:
         if options.as_printed:
             raise DdctError('--as-printed is about the thesis, --from about a log: give one')
         return identify_log(options)
-    of_log = (*CHOICES, 'columns', 'check', 'fix', 'overrides', 'force', 'out', 'overwrite')
+    of_log = (
+        *CHOICES,
+        'columns',
+        'dbc',
+        'guess',
+        'check',
+        'fix',
+        'overrides',
+        'force',
+        'out',
+        'overwrite',
+    )
     if any(getattr(options, name) for name in of_log):
         raise DdctError(
-            '--scenario, --car, --drive, --columns, --check, --fix, --set, --force, --out and '
-            '--overwrite need a log: give --from LOG'
+            '--scenario, --car, --drive, --columns, --dbc, --guess, --check, --fix, --set, '
+            '--force, --out and --overwrite need a log: give --from LOG'
         )
     coefficients = PRINTED
     if options.as_printed:

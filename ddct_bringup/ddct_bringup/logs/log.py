@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""A log of a drive: quantities over time in SI units, from CSV or from a recorded bag."""
+"""A log of a drive: quantities over time in SI units, from a file of a tool or from a bag."""
 
 import hashlib
 from collections.abc import Sequence
@@ -16,11 +16,9 @@ from ddct_bringup.logs.columns import (
     QUANTITIES,
     TIME,
     ColumnMap,
-    LogColumn,
 )
+from ddct_bringup.logs.sources import LogTable, source_of
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.base.units import si_values
-from ddct_plant.files.csv_table import CsvTable, read_csv
 from ddct_plant.files.input_file import mcap_of
 
 HIGHEST_SPEED = 1000.0
@@ -86,7 +84,7 @@ def between(
 
 def read_log(path: Path, columns: ColumnMap, needed: Sequence[str] = ()) -> MeasuredLog:
     """
-    Read a CSV log with its column map, or a bag, which needs none.
+    Read the log of another tool with its column map, or a bag, which needs none.
 
     Raise DdctError for a file that cannot be read, a quantity that is missing, times that do not
     rise, and speeds that no car has, in one line with the place.
@@ -97,7 +95,7 @@ def read_log(path: Path, columns: ColumnMap, needed: Sequence[str] = ()) -> Meas
             signals = read_bag_signals(bag)  # first, because it refuses what is no file
             log = MeasuredLog(path, _digest(bag), *signals, OWN_HELD)
         else:
-            log = _read_csv_log(path, columns, needed)
+            log = _read_mapped_log(path, columns, needed)
     except ParameterError as error:
         raise DdctError(str(error)) from error
     for name in needed:
@@ -106,24 +104,22 @@ def read_log(path: Path, columns: ColumnMap, needed: Sequence[str] = ()) -> Meas
     return log
 
 
-def _read_csv_log(path: Path, columns: ColumnMap, needed: Sequence[str]) -> MeasuredLog:
+def _read_mapped_log(path: Path, columns: ColumnMap, needed: Sequence[str]) -> MeasuredLog:
     for name in needed:
         if name not in columns.columns:
             raise ParameterError(f'{path}: the column map has no {name}: add columns.{name}')
-    names = [each.column for each in columns.columns.values()]
-    dated = [each.column for each in columns.columns.values() if each.unit == DATE_TIME]
-    table = read_csv(
-        path,
-        names,
-        date_times=dated,
-        optional=[columns.columns[name].column for name in columns.optional],
+    mapped = columns.columns
+    table = source_of(path, columns.bus).table(
+        [name for each in mapped.values() for name in each.names],
+        date_times=[n for each in mapped.values() if each.unit == DATE_TIME for n in each.names],
+        optional=[n for name in columns.optional for n in mapped[name].names],
     )
     signals = {
-        name: si_values(table.columns[each.column], _unit(each), QUANTITIES[name].unit)
-        for name, each in columns.columns.items()
-        if each.column in table.columns
+        name: each.si_values(table.columns, QUANTITIES[name].unit)
+        for name, each in mapped.items()
+        if table.columns.keys() >= {*each.names}
     }
-    _require_rising(table, columns.columns[TIME].column, signals[TIME])
+    _require_rising(table, mapped[TIME].names[0], signals[TIME])
     for name, values in signals.items():
         if QUANTITIES[name].unit == 'rad/s':
             _require_speed(table, columns, name, values)
@@ -131,12 +127,7 @@ def _read_csv_log(path: Path, columns: ColumnMap, needed: Sequence[str]) -> Meas
     return MeasuredLog(path, _digest(path), time_s, signals, columns.held)
 
 
-def _unit(column: LogColumn) -> str:
-    """Return the unit of the numbers of a column: s for dates with times."""
-    return 's' if column.unit == DATE_TIME else column.unit
-
-
-def _require_rising(table: CsvTable, column: str, time_s: np.ndarray) -> None:
+def _require_rising(table: LogTable, column: str, time_s: np.ndarray) -> None:
     missing = np.flatnonzero(~np.isfinite(time_s))
     if missing.size:
         raise ParameterError(f'{table.place(int(missing[0]), column)}: the time is empty: mend it')
@@ -149,12 +140,12 @@ def _require_rising(table: CsvTable, column: str, time_s: np.ndarray) -> None:
         )
 
 
-def _require_speed(table: CsvTable, columns: ColumnMap, name: str, values: np.ndarray) -> None:
+def _require_speed(table: LogTable, columns: ColumnMap, name: str, values: np.ndarray) -> None:
     high = np.flatnonzero(np.abs(values) > HIGHEST_SPEED)
     if high.size:
         row, column = int(high[0]), columns.columns[name]
         raise ParameterError(
-            f'{table.place(row, column.column)}: {name} is {values[row]:g} rad/s: is it '
+            f'{table.place(row, column.names[0])}: {name} is {values[row]:g} rad/s: is it '
             f'in another unit than {column.unit}?'
         )
 

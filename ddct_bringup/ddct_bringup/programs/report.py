@@ -61,7 +61,7 @@ def _parser() -> argparse.ArgumentParser:
         metavar='RUN',
         type=Path,
         nargs='+',
-        help='a bag folder, an .mcap file, a folder that is searched for bags, or a CSV log',
+        help='a bag folder, an .mcap file, a folder that is searched for bags, or a log',
     )
     add_columns_option(parser)
     parser.add_argument(

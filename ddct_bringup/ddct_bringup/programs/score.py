@@ -73,7 +73,7 @@ def _parser() -> argparse.ArgumentParser:
         metavar='BAG|FOLDER',
         type=Path,
         nargs='+',
-        help='a bag folder, an .mcap file, a folder that is searched for bags, or a CSV log',
+        help='a bag folder, an .mcap file, a folder that is searched for bags, or a log',
     )
     parser.add_argument('--json', metavar='FILE', help="write scores.json to FILE; '-': stdout")
     add_columns_option(parser)

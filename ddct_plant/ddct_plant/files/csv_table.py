@@ -119,6 +119,11 @@ class CsvTable:
         return f'{self._source.path}: line {self._lines[row]}, column {column}'
 
 
+def csv_header(path: Path) -> list[str]:
+    """Return the names in the header of a file, none of an empty one; raise ParameterError."""
+    return _CsvText.of(path).header_and_below()[0]
+
+
 def read_csv(
     path: Path,
     names: Iterable[str],

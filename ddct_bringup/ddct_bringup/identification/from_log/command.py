@@ -11,16 +11,17 @@ from ddct_bringup.bag.measured_keys import MeasuredKeys
 from ddct_bringup.identification.from_log.base_car import drag_of, radius_of, with_radius
 from ddct_bringup.identification.from_log.car_and_drive import OutFolder, write_car_and_drive
 from ddct_bringup.identification.from_log.car_of_log import base_of_car
+from ddct_bringup.identification.from_log.common_rows import in_common_rows
 from ddct_bringup.identification.from_log.drive_of_log import LogDrive
 from ddct_bringup.identification.from_log.fit import fit_log
+from ddct_bringup.identification.from_log.log_columns import columns_of
 from ddct_bringup.identification.from_log.log_fit_report import LogFitReport, print_fit
 from ddct_bringup.identification.from_log.prediction import predict
 from ddct_bringup.identification.from_log.stretches import TORQUES, stretches_of
 from ddct_bringup.identification.from_log.unknowns import PARAMETERS
 from ddct_bringup.identification.from_log.verdict import reasons_against
-from ddct_bringup.logs.columns import TIME, ColumnMap, load_columns, own_columns
+from ddct_bringup.logs.columns import ColumnMap
 from ddct_bringup.logs.log import SPEEDS, MeasuredLog, read_log
-from ddct_bringup.logs.wheel_radius import VEHICLE_SPEED
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import options_of, require_known
 from ddct_plant.files.output_file import STDOUT, require_place
@@ -43,12 +44,25 @@ HOLD_OUT = 0.3
 def add_log_options(parser: ProgramParser) -> None:
     """Add the options of `--from LOG`."""
     group = parser.add_argument_group('from a log')
-    group.add_argument('--from', dest='log', metavar='LOG', type=Path, help='a CSV log or a bag')
+    group.add_argument(
+        '--from', dest='log', metavar='LOG', type=Path, help='a log (CSV, MAT, MDF 4) or a bag'
+    )
     group.add_argument(
         '--columns',
         metavar='FILE',
         help='column map: which column holds which quantity; default: those of score '
-        '--signals-csv',
+        '--signals-csv, else it is guessed and printed',
+    )
+    group.add_argument(
+        '--dbc',
+        metavar='FILE',
+        type=Path,
+        help='without --columns: the signals in the frames of a CAN bus in an MDF log',
+    )
+    group.add_argument(
+        '--guess',
+        metavar='FILE',
+        help='write the guessed column map into FILE, to be corrected, and fit nothing',
     )
     group.add_argument(
         '--check', metavar='LOG', type=Path, help='another log of the same columns to predict'
@@ -95,11 +109,9 @@ def identify_log(options: argparse.Namespace) -> int:
         out.require_new(overwrite=options.overwrite)
         base_of_car(choice_of(options))
     start = base_scenario(options, options.overrides)
-    columns = (
-        load_columns(options.columns)
-        if options.columns
-        else own_columns(TIME, *NEEDED, optional=(VEHICLE_SPEED,))
-    )
+    columns = columns_of(options, start, NEEDED)
+    if options.guess:
+        return 0
     require_known(columns.run, options_of(MeasuredKeys), prefix='run.')
     fitted, held_out = _logs(options, columns)
     radius = radius_of(start, options.overrides, fitted)
@@ -130,7 +142,7 @@ def identify_log(options: argparse.Namespace) -> int:
             'or its column map, or accept the fit with --force'
         )
     if out:
-        whole = read_log(options.log, columns, NEEDED)
+        whole = in_common_rows(read_log(options.log, columns, NEEDED))
         set_times = dict(map(parsed_override, options.overrides))
         given = {key: set_times[key] for key in TIMES if key in set_times}
         drive = LogDrive(base, fit, whole, given or columns.run, stretches_of(whole, drag))
@@ -149,9 +161,9 @@ def _more(reasons: Sequence[str]) -> str:
 
 def _logs(options: argparse.Namespace, columns: ColumnMap) -> tuple[MeasuredLog, MeasuredLog]:
     """Return the log to fit and the held-out log to predict."""
-    log = read_log(options.log, columns, NEEDED)
+    log = in_common_rows(read_log(options.log, columns, NEEDED))
     if options.check:
-        return log, read_log(options.check, columns, NEEDED)
+        return log, in_common_rows(read_log(options.check, columns, NEEDED))
     first, last = float(log.time_s[0]), float(log.time_s[-1])
     parting = last - options.hold_out * (last - first)
     return log.part(first, parting), log.part(parting, last)

@@ -106,7 +106,7 @@ def add_columns_option(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--columns',
         metavar='FILE',
-        help='column map of a CSV log: which column holds which quantity',
+        help='column map of a log: which column holds which quantity',
     )
 
 
