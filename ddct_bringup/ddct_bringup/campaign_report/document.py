@@ -30,6 +30,7 @@ from ddct_bringup.documents.document import (
 from ddct_bringup.documents.page_parts import value_text
 from ddct_bringup.evaluation.attribution import Effect
 from ddct_bringup.evaluation.boundaries import Boundary, BoundarySide
+from ddct_bringup.evaluation.case_figures import RESPONSE
 from ddct_bringup.evaluation.grouped_rows import GroupedRows
 from ddct_bringup.evaluation.paired import PairedDifference
 from ddct_bringup.evaluation.quantities import QUANTITIES
@@ -41,8 +42,8 @@ from ddct_bringup.verdict.state import ENGAGED
 from ddct_plant.program.command_line import package_version
 from ddct_plant.program.table import Weight
 
-MAIN = tuple(each.key for each in (*FIGURES, *TABLE_5_1))
-"""Figures and metrics of Table 5.1, which are shown first."""
+MAIN = tuple(each.key for each in (RESPONSE, *FIGURES, *TABLE_5_1))
+"""Response, figures and metrics of Table 5.1, which are shown first."""
 NO_VALUE = 'no engaged run has a value'
 _NAME = Weight.IDENTIFYING
 Entry = TypeVar('Entry')

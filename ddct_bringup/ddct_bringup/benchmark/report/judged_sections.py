@@ -48,19 +48,16 @@ class _Judged:
     name: str
     development: Summary
     held_out: Summary
-
-    @property
-    def sides(self) -> list[tuple[GroupSummary, GroupSummary]]:
-        """The judged controller, then those beside it: in development and held-out cases."""
-        theirs = self.held_out.groups
-        return [(self.development.group(each.controller), each) for each in theirs]
+    sides: tuple[tuple[GroupSummary, GroupSummary], ...]
+    """The judged controller, then those beside it: in development and held-out cases."""
 
 
 def judged_sections(result: Result, judged: JudgedResult) -> Iterator[Section]:
     """Yield the sections of one judged controller."""
     if not result.development or not judged.held_out:
         return
-    of = _Judged(judged.controller, result.development, judged.held_out)
+    sides = result.side_by_side(judged)
+    of = _Judged(judged.controller, result.development, judged.held_out, sides)
     name = of.name
     prefix = f'{name}: ' if len(result.judged) > 1 else ''
     further = _further(of)
@@ -173,7 +170,7 @@ def gaps_table(gaps: Sequence[Gap], title: str) -> Table:
     """Return the gaps of the five figures; `title` says of what they are."""
     columns = [
         Column(title, number=False, weight=_NAME, symbols=True),
-        Column('a held-out run is the worse one', form='.0%', missing=_TOO_FEW),
+        Column('a held-out run is the worse one', form='.1%', missing=_TOO_FEW),
         Column('p', missing=_TOO_FEW),
         Column('left out', form='d', weight=Weight.DETAIL),
         Column('beyond chance', number=False),
@@ -249,10 +246,6 @@ def _spreads(of: _Judged, keys: Sequence[str]) -> Table:
     ]
     emphasised = range(0, len(rows), len(of.sides))
     return Table('', [_QUANTITY, _CONTROLLER, *_spread_columns()], rows, emphasised)
-
-
-def _further_spreads(of: _Judged, further: Sequence[str]) -> list[Block]:
-    return [_spreads(of, further), meanings(further)] if further else []
 
 
 def _spreads_by_scenario(of: _Judged) -> Table:
