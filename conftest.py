@@ -10,6 +10,7 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
+import hypothesis
 import pytest
 
 # Before any test imports numpy: it chooses the kernel of linear algebra.
@@ -19,6 +20,11 @@ pytest_plugins = ['tiers']
 VARIABLE = 'DDCT_CACHE'
 """That of `ddct_plant.files.cache_folder`."""
 _FOLDER = pytest.StashKey[Path]()
+# On a busy machine any example may take long.
+hypothesis.settings.register_profile(
+    'busy', deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow]
+)
+hypothesis.settings.load_profile('busy')
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # So it is in the background of a shell, and the programs that tests start would inherit it.
     signal.signal(signal.SIGINT, signal.default_int_handler)

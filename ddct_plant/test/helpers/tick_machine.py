@@ -165,13 +165,13 @@ def require_of_schedules(machine: type[RuleBasedStateMachine], rules: int) -> No
     """
     Require what a machine states of schedules of at most `rules` rules.
 
-    They are 60, always the same, or the number in `SCHEDULES`, new ones in each run.
+    They are 30, always the same, or the number in `SCHEDULES`, new ones in each run.
     """
     longer = os.environ.get(SCHEDULES)
     run_state_machine_as_test(
         machine,
         settings=settings(
-            max_examples=int(longer or 60),
+            max_examples=int(longer or 30),
             stateful_step_count=rules,
             derandomize=not longer,
             database=None,
