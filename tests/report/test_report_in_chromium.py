@@ -23,7 +23,9 @@ pytestmark = [
         chromium() is None, reason='no Chromium on this machine (Debian: apt install chromium)'
     ),
 ]
-CHARTS = 8
+TIME_CHARTS = 9
+CHARTS = 11
+"""Number of all charts: the front and two figures against each other besides."""
 CONTROLLERS = ('pi', 'ls8', 'hinf1')
 COUNT_PAINTED = """[...document.querySelectorAll('.chart')].map((place) => {
   const view = [...Bokeh.index].find((each) => each.el.parentElement === place);
@@ -113,8 +115,8 @@ def test_a_yardstick_has_its_star_and_hollow_point_and_the_withheld_torque_its_s
 ) -> None:
     stars = """[...document.querySelectorAll('.figures tbody tr')].map((row) => [
       row.querySelector('.run').textContent.trim(), row.querySelector('.star') !== null])"""
-    hollow = """[...document.querySelectorAll('.floor-front [data-run]')].map((point) => [
-      point.querySelector('text').textContent, point.querySelector('.hollow') !== null])"""
+    hollow = """[...document.querySelectorAll('#floor-front .legend span')].slice(2).map((key) => [
+      key.textContent, key.querySelector('path').getAttribute('fill') === 'none'])"""
     painted = f'{AREAS}.map((area) => area.glyph.fill_color.value)'
     withheld = f"""{AREAS}.map(({{data_source: {{data}}}}) =>
       Math.max(...data.with_withheld.map((top, tick) => top - data.C_m[tick])))"""
@@ -207,9 +209,13 @@ def test_a_run_is_switched_off_in_all_charts(page: Path, visit: Visitor) -> None
     scripts = [heights, SHOWN_LINES, click, SHOWN_LINES, count, none, SHOWN_LINES]
     scripts += [everything, SHOWN_LINES, heights]
     visited = visit(page, scripts=scripts)
-    assert (visited.values[1], visited.values[3], visited.values[6]) == (3 * CHARTS, 2 * CHARTS, 0)
+    assert (visited.values[1], visited.values[3], visited.values[6]) == (
+        3 * TIME_CHARTS,
+        2 * TIME_CHARTS,
+        0,
+    )
     assert visited.values[4] == '2 of 3 runs shown'
-    assert visited.values[8] == 3 * CHARTS
+    assert visited.values[8] == 3 * TIME_CHARTS
     assert visited.values[9] == visited.values[0]
     assert visited.errors == []
 
@@ -218,11 +224,11 @@ def test_a_run_is_switched_off_in_all_charts(page: Path, visit: Visitor) -> None
 def test_the_time_axis_is_one_for_all_charts(page: Path, visit: Visitor) -> None:
     window = "document.querySelectorAll('[data-range]')[1].click()"
     whole = "document.querySelectorAll('[data-range]')[0].click()"
-    ranges = """Bokeh.documents[0].roots().map((chart) =>
+    ranges = f"""Bokeh.documents[0].roots().slice(0, {TIME_CHARTS}).map((chart) =>
       [chart.x_range.start, chart.x_range.end])"""
     visited = visit(page, scripts=[ranges, window, ranges, whole, ranges])
-    assert visited.values[0] == visited.values[4] == [[0.0, 3.0]] * CHARTS
-    assert visited.values[2] == [[0.6, 1.7]] * CHARTS
+    assert visited.values[0] == visited.values[4] == [[0.0, 3.0]] * TIME_CHARTS
+    assert visited.values[2] == [[0.6, 1.7]] * TIME_CHARTS
 
 
 def test_the_switch_and_the_system_choose_the_colours(page: Path, visit: Visitor) -> None:
@@ -247,70 +253,23 @@ def test_a_table_sorts_by_a_pressed_heading(page: Path, visit: Visitor) -> None:
 
 
 def test_the_two_figures_of_the_pareto_view_are_chosen(page: Path, visit: Visitor) -> None:
-    points = """[...document.querySelectorAll('.pareto .point')].map((point) => [
-      point.style.left, point.style.bottom, point.classList.contains('best'), point.title])"""
-    titles = "[...document.querySelectorAll('.pareto .title')].map((each) => each.textContent)"
+    points = """(() => {
+      const {below, left, renderers: [{data_source: {data}}]} =
+        Bokeh.documents[0].roots().find((chart) => chart.name === 'pareto');
+      return [['x', 'y', 'ring'].map((name) => [...data[name]]),
+        [below[0].axis_label, left[0].axis_label]];
+    })()"""
     choose = """['peak_jerk_m_s3', 'friction_work_j'].forEach((name, index) => {
       const select = document.querySelectorAll('.pareto-choice select')[index];
       select.value = name;
       select.dispatchEvent(new Event('change'));
     })"""
-    visited = visit(page, scripts=[points, titles, choose, points, titles])
-    before, titles_before, _, after, titles_after = visited.values
-    assert titles_after == titles_before[::-1]
-    assert len(before) == 3
-    assert any(best for *_, best, _ in before)
-    for (left, bottom, best, title), turned in zip(before, after, strict=True):
-        assert [round(float(each[:-1]), 2) for each in turned[:2]] == [
-            float(bottom[:-1]),
-            float(left[:-1]),
-        ]
-        assert turned[2:] == [best, ', '.join(reversed(title.split(', ')))]
-    assert visited.errors == []
-
-
-def test_labels_of_the_pareto_view_cover_neither_each_other_nor_a_dot(
-    page: Path, visit: Visitor
-) -> None:
-    crowd = """const {style} = document.querySelector('.field');
-      Object.assign(style, {width: '1rem', height: '1rem'});
-      document.querySelector('.pareto-choice select').dispatchEvent(new Event('change'))"""
-    plain = """document.querySelectorAll('.point b').forEach((label) => {
-      label.style.translate = ''; })"""
-    covered = """(() => {
-      const box = (each) => each.getBoundingClientRect();
-      const labels = [...document.querySelectorAll('.point b')].map(box);
-      const all = [...labels, ...[...document.querySelectorAll('.point .dot')].map(box)];
-      return labels.flatMap((one, index) => all.filter((other, at) => at !== index
-        && one.left < other.right && one.right > other.left
-        && one.top < other.bottom - 0.1 && one.bottom > other.top + 0.1)).length;
-    })()"""
-    visited = visit(page, scripts=[covered, crowd, covered, plain, covered])
-    assert [visited.values[0], visited.values[2]] == [0, 0]
-    assert visited.values[4] > 0
-    assert visited.errors == []
-
-
-@pytest.mark.nightly
-def test_labels_of_the_pareto_view_stay_within_it_where_they_have_room(
-    page: Path, visit: Visitor
-) -> None:
-    stack = """const {style} = document.querySelector('.field');
-      Object.assign(style, {width: '1rem', height: '6rem'});
-      document.querySelectorAll('.point').forEach((point) => {
-        Object.defineProperty(point.style, 'bottom', {set() {}});
-        point.style.setProperty('bottom', '90%');
-      });
-      document.querySelector('.pareto-choice select').dispatchEvent(new Event('change'))"""
-    outside = """(() => {
-      const {top, bottom} = document.querySelector('.field').getBoundingClientRect();
-      return [...document.querySelectorAll('.point b')].map((label) => {
-        const box = label.getBoundingClientRect();
-        return box.top < top - 0.1 || box.bottom > bottom + 0.1;
-      });
-    })()"""
-    visited = visit(page, scripts=[stack, outside])
-    assert visited.values[1] == [False] * 3
+    visited = visit(page, scripts=[points, choose, points])
+    ((across, up, rings), titles), _, (after, titles_after) = visited.values
+    assert titles_after == titles[::-1]
+    assert len(across) == 3
+    assert any(rings)
+    assert after == [up, across, rings]
     assert visited.errors == []
 
 

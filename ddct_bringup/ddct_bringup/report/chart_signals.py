@@ -24,16 +24,30 @@ class ChartSignal:
     """Meaning of the signal: where it is measured, and its sign."""
     values: Callable[[Trajectory], np.ndarray]
     """Function that returns the signal, (N+1,), in the unit."""
-    limit: Callable[[Trajectory], np.ndarray] | None = None
-    """Function that returns the bound of the magnitude, (N+1,), in the unit."""
+    thin: Callable[[Trajectory], np.ndarray] | None = None
+    """Function that returns a second signal, (N+1,), in the unit, whose line is thin."""
+    thin_name: str = ''
+    """Name of the second signal."""
 
     @property
-    def limit_key(self) -> str:
-        """Name of the column of the limit."""
-        return f'{self.key}_limit'
+    def thin_key(self) -> str:
+        """Name of the column of the second signal."""
+        return f'{self.key}_thin'
 
+
+SPEEDS = ChartSignal(
+    'w_m',
+    'Speeds of engine and primary shaft',
+    'w_m',
+    'rpm',
+    'speed of the engine. A thin line is w_p, that of the primary shaft.',
+    lambda run: rpm_from_rad_s(run.engine_speed),
+    lambda run: rpm_from_rad_s(run.engine_speed - run.slip_speed),
+    'w_p',
+)
 
 CHART_SIGNALS = (
+    SPEEDS,
     ChartSignal(
         'w_d',
         'Slip speed of the clutch',
@@ -41,30 +55,6 @@ CHART_SIGNALS = (
         'rpm',
         'speed of the engine less that of the primary shaft. Above zero the engine is faster.',
         lambda run: rpm_from_rad_s(run.slip_speed),
-    ),
-    ChartSignal(
-        'error',
-        'Slip error',
-        'e',
-        'rpm',
-        'reference less w_d. Below zero the clutch slips more than it should.',
-        lambda run: rpm_from_rad_s(run.at_tick('slip_reference') - run.slip_speed),
-    ),
-    ChartSignal(
-        'w_sr',
-        'Twist rate of the driveshaft',
-        'w_sr',
-        'rpm',
-        'speed of the inner end of the driveshaft less that of the wheel. Above zero it winds up.',
-        lambda run: rpm_from_rad_s(run.driveshaft_speed),
-    ),
-    ChartSignal(
-        'A_x',
-        'Acceleration of the vehicle',
-        'A_x',
-        'm/s²',
-        'above zero the car gets faster.',
-        lambda run: run.vehicle_accel,
     ),
     ChartSignal(
         'C_f_request',
@@ -92,11 +82,35 @@ CHART_SIGNALS = (
     ),
     ChartSignal(
         'C_m',
-        'Engine torque',
+        'Engine torque: demand and delivered',
         'C_m',
         'N m',
         'above zero it drives the engine. What it lacks of the demand C_dem is shaded.',
         lambda run: run.engine_torque,
+    ),
+    ChartSignal(
+        'A_x',
+        'Acceleration of the vehicle',
+        'A_x',
+        'm/s²',
+        'above zero the car gets faster.',
+        lambda run: run.vehicle_accel,
+    ),
+    ChartSignal(
+        'error',
+        'Slip error',
+        'e',
+        'rpm',
+        'reference less w_d. Below zero the clutch slips more than it should.',
+        lambda run: rpm_from_rad_s(run.at_tick('slip_reference') - run.slip_speed),
+    ),
+    ChartSignal(
+        'w_sr',
+        'Twist rate of the driveshaft',
+        'w_sr',
+        'rpm',
+        'speed of the inner end of the driveshaft less that of the wheel. Above zero it winds up.',
+        lambda run: rpm_from_rad_s(run.driveshaft_speed),
     ),
 )
 """Signals of every run."""
@@ -123,6 +137,7 @@ TRANSMITTED = ChartSignal(
     'what passes through the plates. A thin line is what they can carry.',
     lambda run: run.primary_shaft_effort,
     capacity,
+    'capacity',
 )
 
 CLUTCH_SIGNALS = (
@@ -160,14 +175,6 @@ SENSOR_SIGNALS = (
 """Signals of runs with sensors."""
 
 
-ENGINE_SPEED = ChartSignal(
-    'w_m',
-    'Engine speed',
-    'w_m',
-    'rpm',
-    'speed of the engine.',
-    lambda run: rpm_from_rad_s(run.engine_speed),
-)
 WHEEL_TORQUE = ChartSignal(
     'driveshaft_torque',
     'Torque of the driveshaft',
@@ -178,7 +185,6 @@ WHEEL_TORQUE = ChartSignal(
 )
 
 LOG_SIGNALS = (
-    ENGINE_SPEED,
     ChartSignal(
         'V_x',
         'Speed of the vehicle',
@@ -191,3 +197,15 @@ LOG_SIGNALS = (
     WHEEL_TORQUE,
 )
 """Signals of logs of a car, and of the runs compared with them."""
+
+SHOWN_FIRST = (
+    'w_m',
+    'w_d',
+    'C_f_request',
+    'C_f_actuator',
+    'C_f_clutch',
+    'C_f_transmitted',
+    'C_m',
+    'A_x',
+)
+"""Keys of the charts that come first, in this order: speeds, slip, torques, acceleration."""

@@ -25,6 +25,7 @@ from ddct_bringup.report.chart_signals import (
     CLUTCH_SIGNALS,
     LOG_SIGNALS,
     SENSOR_SIGNALS,
+    SHOWN_FIRST,
     ChartSignal,
 )
 from ddct_bringup.report.phase_lanes import LANES, draw_lanes
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
 
 _HEIGHT_PX = 300
 FAINT = 0.6
-"""Opacity of a limit next to the line that it bounds."""
+"""Opacity of a thin line next to the line of its run."""
 _SHADE = 0.2
 """Opacity of the area between the demand and an engine torque below it."""
 
@@ -80,7 +81,7 @@ def time_charts(runs: Sequence[ChartRun], page: PageCharts) -> list[str]:
 
 def charted_signals(runs: Sequence[ChartRun]) -> list[ChartSignal]:
     """Return the signals that at least one run has, in the order of the page."""
-    return list(dict.fromkeys(each for of in _drawn(runs) for each in of))
+    return sorted(dict.fromkeys(each for of in _drawn(runs) for each in of), key=_place)
 
 
 def chart_signals_of(trajectory: Trajectory, *, with_log: bool = False) -> tuple[ChartSignal, ...]:
@@ -92,9 +93,15 @@ def chart_signals_of(trajectory: Trajectory, *, with_log: bool = False) -> tuple
         *(SENSOR_SIGNALS if trajectory.sensed else ()),
         *(LOG_SIGNALS if with_log else ()),
     )
-    return tuple(
+    drawn = (
         each for each in dict.fromkeys(possible) if np.isfinite(each.values(trajectory)).any()
     )
+    return tuple(sorted(drawn, key=_place))
+
+
+def _place(signal: ChartSignal) -> int:
+    """Return the place of a chart on the page: those of `SHOWN_FIRST`, then the others."""
+    return SHOWN_FIRST.index(signal.key) if signal.key in SHOWN_FIRST else len(SHOWN_FIRST)
 
 
 def dashed_lines(runs: Sequence[ChartRun]) -> list[str]:
@@ -121,8 +128,8 @@ def _source(run: ChartRun, quantities: Sequence[ChartSignal]) -> 'ColumnDataSour
     columns = {'t': trajectory.time_s}
     for quantity in quantities:
         columns[quantity.key] = quantity.values(trajectory)
-        if quantity.limit:
-            columns[quantity.limit_key] = quantity.limit(trajectory)
+        if quantity.thin:
+            columns[quantity.thin_key] = quantity.thin(trajectory)
     columns['reference'] = rpm_from_rad_s(trajectory.at_tick('slip_reference'))
     columns['demand'] = trajectory.torque_demand
     controlled = trajectory.time_s >= run.facts.control_start_s
@@ -165,16 +172,16 @@ def _line(
     switch(line, [run])
     if run.look.mark:
         mark_line(chart, quantity, run, source)
-    if quantity.limit:
-        limit = chart.line(
+    if quantity.thin:
+        thin = chart.line(
             't',
-            quantity.limit_key,
+            quantity.thin_key,
             source=source,
             line_width=1.0,
             line_alpha=FAINT,
             line_color=run.look.colour,
         )
-        switch(limit, [run], alpha=FAINT)
+        switch(thin, [run], alpha=FAINT)
 
 
 def _draw_shared(

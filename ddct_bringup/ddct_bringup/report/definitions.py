@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Definitions of the terms, symbols, signs and dashes of the page."""
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ddct_bringup.documents.page_parts import unit_text
-from ddct_bringup.metrics.catalogue import FIGURES, METRICS, OTHERS
+from ddct_bringup.metrics.catalogue import FIGURES
+from ddct_bringup.metrics.metric import Metric
 from ddct_bringup.report.chart_signals import ChartSignal
 from ddct_bringup.scores.scored_run import YARDSTICK
 from ddct_controllers.design.analysis.loop_quantities import LOOP_QUANTITIES
@@ -81,9 +82,9 @@ _STATES = (
         'a gear shift whose clutches worked against each other, or whose engine ran up.',
     ),
     Definition('invalid', 'the run does not count. Its reason stands at the top of the page.'),
-    Definition(
-        'limit', 'a largest magnitude, published or a convention. It does not change the state.'
-    ),
+)
+_LIMIT = Definition(
+    'limit', 'a largest magnitude, published or a convention. It does not change the state.'
 )
 
 _SHIFT = (
@@ -119,30 +120,77 @@ _ORIGIN = (
 )
 
 
-def definitions(
-    quantities: Iterable[ChartSignal], *, thesis: bool, shift: bool = False
-) -> dict[str, tuple[Definition, ...]]:
-    """
-    Return the definitions for a page that draws these signals, by subject.
+@dataclass(frozen=True)
+class ShownParts:
+    """What a page shows, so that it defines no more."""
 
-    `thesis` is whether runs are compared with Table 5.1, `shift` whether they are gear shifts.
-    """
-    reading = _READING + (_THESIS if thesis else ())
-    signals = tuple(
-        Definition(each.symbol, f'{each.title}: {each.meaning}', each.unit) for each in quantities
-    )
-    of_shift = (_defined(each) for each in METRICS.values() if each.of_shift)
-    return {
-        'Reading the tables': reading,
-        'Signals': signals,
-        'Figures': tuple(_defined(each) for each in FIGURES if not each.of_shift),
-        'Metrics': tuple(_defined(each) for each in OTHERS if not each.of_shift),
-        **({'Gear shift': (*_SHIFT, *of_shift)} if shift else {}),
-        'States and limits': _STATES,
-        'Frequency': (*_LOOPS, *map(_defined, LOOP_QUANTITIES)),
-        'Update times': _TIMES,
-        'Origin': _ORIGIN,
+    signals: Sequence[ChartSignal]
+    metrics: Sequence[Metric]
+    """Metrics of the tables."""
+    states: frozenset[str]
+    """States of the runs, as written on the page."""
+    modes: frozenset[str]
+    """Modes of the runs, as written on the page."""
+    thesis: bool = False
+    """Whether runs are compared with Table 5.1."""
+    shift: bool = False
+    """Whether they are gear shifts."""
+    limits: bool = False
+    """Whether a limit is shown."""
+    beyond: bool = False
+    """Whether a value is beyond its limit."""
+    yardstick: bool = False
+    """Whether a ratio has a star."""
+    loops: bool = False
+    """Whether margins are shown."""
+    times: bool = False
+    """Whether update times are shown."""
+
+
+def definitions(shown: ShownParts) -> dict[str, tuple[Definition, ...]]:
+    """Return the definitions of what a page shows, by subject; a subject has at least one."""
+    figures = [each for each in shown.metrics if each in FIGURES and not each.of_shift]
+    others = [each for each in shown.metrics if each not in FIGURES and not each.of_shift]
+    of_shift = [each for each in shown.metrics if each.of_shift]
+    groups = {
+        'Reading the tables': _reading(shown),
+        'Signals': [
+            Definition(each.symbol, f'{each.title}: {each.meaning}', each.unit)
+            for each in shown.signals
+        ],
+        'Figures': [_defined(each) for each in figures],
+        'Metrics': [_defined(each) for each in others],
+        'Gear shift': [*_SHIFT, *map(_defined, of_shift)] if shown.shift else [],
+        'States and limits': _states(shown),
+        'Margins': [*_LOOPS, *map(_defined, LOOP_QUANTITIES)] if shown.loops else [],
+        'Update times': _TIMES if shown.times else [],
+        'Origin': [each for each in _ORIGIN if shown.modes & _names(each)],
     }
+    return {subject: tuple(entries) for subject, entries in groups.items() if entries}
+
+
+def _names(entry: Definition) -> set[str]:
+    """Return the names that one entry defines."""
+    return set(entry.term.split(', '))
+
+
+def _reading(shown: ShownParts) -> list[Definition]:
+    symbols = {each.symbol for each in shown.metrics} | {each.symbol for each in shown.signals}
+    terms = {
+        'σ': any(symbol.startswith('std ') for symbol in symbols),
+        'w_d below zero': 't_a' in symbols,
+        'C_dem': 'C_m' in symbols,
+        '*': shown.yardstick,
+        '▲': shown.beyond,
+    }
+    entries = [each for each in _READING if terms.get(each.term, True)]
+    return [*entries, *(_THESIS if shown.thesis else ())]
+
+
+def _states(shown: ShownParts) -> list[Definition]:
+    """Return the states that occur, and what a limit is where one is shown."""
+    entries = [each for each in _STATES if shown.states & _names(each)]
+    return [*entries, _LIMIT] if shown.limits else entries
 
 
 def _defined(quantity: Quantity) -> Definition:

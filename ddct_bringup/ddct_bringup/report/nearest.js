@@ -72,8 +72,8 @@ function showNearest(views) {
     const sampleOf = document.querySelector(`.chip[data-run="${run}"] .sample`);
     const name = document.createElement('b');
     name.append(sampleOf.cloneNode(true), line.name);
-    const limit = `${field}_limit` in columns ? [document.createElement('br'), `capacity ${value(`${field}_limit`)}`] : [];
-    tip.replaceChildren(name, `${symbol} = ${value(field)}`, ...limit,
+    const thin = `${field}_thin` in columns ? [document.createElement('br'), `${place.dataset.thin} = ${value(`${field}_thin`)}`] : [];
+    tip.replaceChildren(name, `${symbol} = ${value(field)}`, ...thin,
       document.createElement('br'), `at ${times[sample].toFixed(2)} s`);
     tip.hidden = dot.hidden = false;
     const room = document.documentElement.clientWidth - tip.offsetWidth - 8;

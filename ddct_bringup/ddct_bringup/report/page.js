@@ -67,7 +67,7 @@
     });
   });
 
-  // Pareto view: every place and every front is in the data; a choice only looks them up.
+  // Pareto view: every magnitude and every front is in the data; a choice only looks them up.
 
   const [across, up] = document.querySelectorAll('.pareto-choice select');
 
@@ -75,69 +75,18 @@
     const {figures, fronts} = data.pareto;
     const [x, y] = [figures[across.value], figures[up.value]];
     const front = fronts[[across.value, up.value].sort().join(' ')];
-    document.querySelectorAll('.pareto .point').forEach((point) => {
-      const run = runOf(point);
-      point.hidden = !(run in x.places && run in y.places);
-      if (point.hidden) return;
-      point.style.left = `${100 * x.places[run]}%`;
-      point.style.bottom = `${100 * y.places[run]}%`;
-      point.classList.toggle('left', x.places[run] > 0.6);
-      point.classList.toggle('best', front.includes(run));
-      point.title = `${x.values[run]}, ${y.values[run]}`;
-    });
-    [[x, 'across', 'left'], [y, 'up', 'bottom']].forEach(([figure, name, side]) => {
-      document.querySelector(`.pareto .title.${name}`).textContent = figure.title;
-      document.querySelector(`.pareto .ticks.${name}`).replaceChildren(
-        ...figure.ticks.map(([text, place]) => {
-          const tick = document.createElement('i');
-          tick.textContent = text;
-          tick.style[side] = `${100 * place}%`;
-          return tick;
-        }));
-    });
-    partParetoLabels();
+    const {below, left, renderers: [{data_source: source}]} = charts.find((chart) => chart.name === 'pareto');
+    const runs = Array.from(source.data.run);
+    source.data = {
+      ...source.data,
+      x: runs.map((run) => x.values[run] ?? NaN),
+      y: runs.map((run) => y.values[run] ?? NaN),
+      ring: runs.map((run) => Number(front.includes(run))),
+    };
+    below[0].axis_label = x.title;
+    left[0].axis_label = y.title;
   }
 
-  function partParetoLabels() {
-    const points = [...document.querySelectorAll('.pareto .point:not([hidden])')];
-    const parts = points.map((point) => [point.querySelector('b'), point.querySelector('.dot')]);
-    partLabels(document.querySelector('.pareto .field'), parts, 1);
-  }
-
-  // A drawing has its own unit of length, which is `scale` pixels.
-  function partFrontLabels(drawing) {
-    const points = [...drawing.querySelectorAll('[data-run]')];
-    const parts = points.map((point) => [point.querySelector('text'), point.querySelector('circle')]);
-    partLabels(drawing, parts, drawing.getBoundingClientRect().width / drawing.viewBox.baseVal.width);
-  }
-
-  // A label that would cover another one or a dot moves to the nearest free place above or below,
-  // within the place where there is one.
-  function partLabels(place, parts, scale) {
-    const field = place.getBoundingClientRect();
-    const taken = parts.map(([, dot]) => dot.getBoundingClientRect());
-    parts.forEach(([label]) => {
-      label.style.translate = '';
-      const {left, right, top, height} = label.getBoundingClientRect();
-      const free = (next) => {
-        const covered = (y) => taken.find((box) => left < box.right && right > box.left
-          && y < box.bottom && y + height > box.top);
-        let y = top;
-        for (let box = covered(y); box; box = covered(y)) y = next(box);
-        return y;
-      };
-      const above = free((box) => box.top - height);
-      const below = free((box) => box.bottom);
-      const nearest = top - above <= below - top ? [above, below] : [below, above];
-      const found = nearest.find((each) => each >= field.top && each + height <= field.bottom)
-        ?? above;
-      label.style.translate = `0 ${(found - top) / scale}px`;
-      taken.push({left, right, top: found, bottom: found + height});
-    });
-  }
-
-  if (across) partParetoLabels();
-  document.querySelectorAll('.floor-front').forEach(partFrontLabels);
   [across, up].filter(Boolean).forEach((select) => {
     select.disabled = false;
     select.addEventListener('change', placeRuns);

@@ -19,11 +19,12 @@ from ddct_bringup.documents.page_parts import (
 )
 from ddct_bringup.documents.palette import NEUTRAL
 from ddct_bringup.report.charts import charted_signals, dashed_lines, time_charts
-from ddct_bringup.report.definitions import definitions
+from ddct_bringup.report.definitions import ShownParts, definitions
 from ddct_bringup.report.evidence import COMPUTED, LoopEvidence, loop_rows, without_evidence
 from ddct_bringup.report.front_view import front_view
 from ddct_bringup.report.page_runs import PageRun, chart_runs, page_runs
-from ddct_bringup.report.pareto import pair_key, pareto_view
+from ddct_bringup.report.pareto import pareto_view
+from ddct_bringup.report.pareto_chart import PARETO, pareto_chart
 from ddct_bringup.report.phase_lanes import LANES, OPACITY, SHIFT_OPACITY
 from ddct_bringup.report.run_labels import common_conditions
 from ddct_bringup.report.run_tables import TICKS, time_place
@@ -68,13 +69,32 @@ def report_page(
     charted = chart_runs(shown)
     charts = PageCharts()
     drawn = time_charts(charted, charts)
+    front = front_view(runs, limits.rules)
+    front_html = charts.add(front.chart(shown)) if front else None
     quantities = charted_signals(charted)
     pareto = pareto_view(runs)
+    if pareto:
+        charts.add_figure(f'chart-{PARETO}', pareto_chart(pareto, shown))
     data = {**charts.data, 'pareto': pareto and asdict(pareto)}
     recordings = _simulated_first(runs)
     settings = recordings[0].settings
     shift = any(run.scores.is_shift for run in runs)
     table_5_1, figures = table_5_1_columns(runs, thesis_rows), figure_columns(runs)
+    further, limits_shown = other_columns(runs, table_5_1), limit_rows(runs)
+    loops = loop_rows(evidence)
+    parts = ShownParts(
+        quantities,
+        [column.metric for column in (*table_5_1, *figures, *further)],
+        frozenset(run.scores.state.replace('_', ' ') for run in shown),
+        frozenset(str(value) for run in shown for _, value in run.origin.conditions),
+        thesis=any(thesis_rows),
+        shift=shift,
+        limits=bool(limits_shown),
+        beyond=any(cell.beyond for row in limits_shown for cell in row.cells),
+        yardstick=any(cell.yardstick for column in figures for cell in column.cells),
+        loops=bool(loops),
+        times=any(run.times for run in shown),
+    )
     return page_template(_ROOM, 'page.html.j2').render(
         marker=Markup(MARKER),
         bokeh_js=library(),
@@ -82,27 +102,28 @@ def report_page(
         script=Markup().join(page_part(room, each) for room, each in _SCRIPTS),
         data=json_data(data),
         quantities=quantities,
-        definitions=definitions(quantities, thesis=any(thesis_rows), shift=shift),
+        definitions=definitions(parts),
         lanes=LANES if LANES in drawn else None,
         phases=OPACITY,
-        limit_rows=limit_rows(runs),
+        limit_rows=limits_shown,
         limits=limits.origin,
         pareto=pareto,
-        floor_front=front_view(runs, limits.rules),
-        front=pareto.fronts[pair_key(*pareto.default)] if pareto else [],
+        floor_front=front,
+        front_html=front_html,
+        pareto_place=f'chart-{PARETO}',
         neutral=NEUTRAL,
         runs=shown,
         table_5_1=table_5_1,
         figures=figures,
-        further=other_columns(runs, table_5_1),
-        starred=any(cell.yardstick for column in figures for cell in column.cells),
+        further=further,
+        starred=parts.yardstick,
         yardstick=YARDSTICK,
         withheld=any(run.scores.metrics['torque_late_s'] for run in runs),
         shift=shift,
         shift_phases=SHIFT_OPACITY if shift else {},
         prediction_tolerance=PREDICTION_TOLERANCE,
         loop_columns=LOOP_QUANTITIES,
-        loops=loop_rows(evidence),
+        loops=loops,
         no_loops=without_evidence(evidence),
         computed=COMPUTED,
         ticks=TICKS,

@@ -7,12 +7,11 @@ A smaller magnitude of a figure is better. Only engaged runs are compared: a run
 once has little friction work, but is not better.
 """
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations_with_replacement
 
-from ddct_bringup.documents.page_parts import unit_text, value_text
+from ddct_bringup.documents.page_parts import unit_text
 from ddct_bringup.evaluation.non_dominated import non_dominated
 from ddct_bringup.metrics.catalogue import FIGURES, METRICS
 from ddct_bringup.metrics.metric import Metric
@@ -21,8 +20,6 @@ from ddct_bringup.verdict.state import ENGAGED
 
 DEFAULT_PAIR = ('friction_work_j', 'peak_jerk_m_s3')
 """Figures shown first: wear of the facing across, comfort up. Every complete run has both."""
-_MARGIN = 0.06
-_TICKS = 5
 
 
 @dataclass(frozen=True)
@@ -31,12 +28,8 @@ class ParetoAxis:
 
     title: str
     """Symbol of the figure with its unit."""
-    values: Mapping[int, str]
-    """Printed values by run, for runs that have a value."""
-    places: Mapping[int, float]
-    """Positions along the axis by run, 0 to 1."""
-    ticks: Sequence[tuple[str, float]]
-    """Text and position of each tick."""
+    values: Mapping[int, float]
+    """Magnitudes by run, for runs that have a value."""
 
 
 @dataclass(frozen=True)
@@ -94,24 +87,4 @@ def _magnitudes(runs: Sequence[ScoredRecording]) -> dict[str, dict[int, float]]:
 
 def _axis(figure: Metric, values: Mapping[int, float]) -> ParetoAxis:
     unit = unit_text(figure.unit)
-    lowest, highest = min(values.values()), max(values.values())
-    span = (highest - lowest) or abs(highest) or 1.0
-    first, last = lowest - _MARGIN * span, highest + _MARGIN * span
-    return ParetoAxis(
-        title=f'{figure.symbol}, {unit}' if unit else figure.symbol,
-        values={run: f'{value_text(value)} {unit}'.strip() for run, value in values.items()},
-        places={run: round((value - first) / (last - first), 4) for run, value in values.items()},
-        ticks=[
-            (f'{tick:g}', round((tick - first) / (last - first), 4))
-            for tick in round_numbers(first, last)
-        ],
-    )
-
-
-def round_numbers(first: float, last: float) -> list[float]:
-    """Return about five multiples of 1, 2 or 5 times a power of ten between two numbers."""
-    raw = (last - first) / _TICKS
-    power = 10.0 ** math.floor(math.log10(raw))
-    step = next(factor * power for factor in (1, 2, 5, 10) if factor * power >= raw)
-    numbers = range(math.ceil(first / step), math.floor(last / step) + 1)
-    return [float(f'{number * step:.12g}') for number in numbers]
+    return ParetoAxis(f'{figure.symbol}, {unit}' if unit else figure.symbol, values)

@@ -4,13 +4,12 @@
 
 import numpy as np
 
-from ddct_bringup.report.chart_signals import ENGINE_SPEED, WHEEL_TORQUE, ChartSignal, capacity
+from ddct_bringup.report.chart_signals import WHEEL_TORQUE, ChartSignal, capacity
 from ddct_plant.base.units import rpm_from_rad_s
 
 OFF_GOING = 'off_going_'
 """Prefix of the signals of the off-going clutch."""
 SHIFT_SIGNALS = (
-    ENGINE_SPEED,
     WHEEL_TORQUE,
     ChartSignal(
         'handover_share',
@@ -37,6 +36,7 @@ SHIFT_SIGNALS = (
         'can carry.',
         lambda run: run.off_going_transmitted_torque,
         lambda run: capacity(run, OFF_GOING),
+        'capacity',
     ),
     ChartSignal(
         'w_d1',

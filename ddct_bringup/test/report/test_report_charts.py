@@ -61,14 +61,15 @@ def random_run() -> Trajectory:
 
 RUN = random_run()
 SHOWN = {
+    'w_m': (RUN.joint_speed[:, 0] * RPM, 'rpm'),
     'w_d': (RUN.slip_speed * RPM, 'rpm'),
-    'error': ((RUN.slip_reference[:, 0] - RUN.slip_speed) * RPM, 'rpm'),
-    'w_sr': (RUN.joint_speed[:, 3] * RPM, 'rpm'),
-    'A_x': (RUN.vehicle_accel, 'm/s²'),
     'C_f_request': (RUN.torque_request, 'N m'),
     'C_f_actuator': (RUN.actuator_torque[:, 0], 'N m'),
     'C_f_clutch': (RUN.clutch_torque[:, 0], 'N m'),
     'C_m': (RUN.engine_torque, 'N m'),
+    'A_x': (RUN.vehicle_accel, 'm/s²'),
+    'error': ((RUN.slip_reference[:, 0] - RUN.slip_speed) * RPM, 'rpm'),
+    'w_sr': (RUN.joint_speed[:, 3] * RPM, 'rpm'),
     'w_d_sensed': ((RUN.sensed_slip_speed - RUN.slip_speed) * RPM, 'rpm'),
 }
 """Values by chart, from the signals of docs/develop/interfaces.md."""
@@ -109,6 +110,13 @@ def test_a_chart_draws_its_signal_over_time(charts, key):
     assert charts[key].yaxis[0].axis_label == unit
     (quantity,) = [each for each in chart_signals_of(RUN) if each.key == key]
     assert (quantity.unit, charts[key].xaxis[0].axis_label) == (unit, 'time, s')
+
+
+def test_the_chart_of_speeds_has_that_of_the_primary_shaft_as_a_thin_line(charts):
+    _, thin = lines(charts['w_m'])
+    expected = (RUN.joint_speed[:, 0] - RUN.slip_speed) * RPM
+    np.testing.assert_allclose(drawn(thin)[1], expected, rtol=1e-6)
+    assert thin.name is None
 
 
 def test_the_slip_chart_has_the_present_reference_and_the_thesis_s_zero(charts):
@@ -194,7 +202,16 @@ def both():
 
 
 def test_a_clutch_that_sticks_adds_its_charts_for_its_own_runs_only(both):
-    assert list(both) == [*SHOWN, 'C_f_transmitted', 'friction_energy', 'temperature', LANES]
+    first = [*SHOWN][:5]
+    others = [*SHOWN][5:]
+    clutch = ['friction_energy', 'temperature']
+    assert [key for key in both if key not in clutch] == [
+        *first,
+        'C_f_transmitted',
+        *others,
+        LANES,
+    ]
+    assert set(clutch) < set(both)
     assert [len(lines(both[key])) for key in ('A_x', 'temperature')] == [2, 1]
 
 

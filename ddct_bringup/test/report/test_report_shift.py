@@ -76,14 +76,14 @@ def test_torques_slips_share_and_cut_of_the_off_going_side_have_their_charts(run
         for key, expected in (
             ('C_1_request', signals.off_going_torque_request),
             ('C_1_transmitted', signals.off_going_transmitted_torque),
-            ('C_1_transmitted_limit', signals.at_tick('off_going_clutch_torque')),
+            ('C_1_transmitted_thin', signals.at_tick('off_going_clutch_torque')),
             ('w_d1', signals.off_going_slip_speed * 30.0 / np.pi),
             ('handover_share', signals.handover_share),
             ('torque_cut', signals.torque_cut),
             ('driveshaft_torque', signals.driveshaft_effort),
             ('temperature_1', signals.off_going_clutch_temperature),
         ):
-            shown = drawn(charts[key.removesuffix('_limit')], index, key)
+            shown = drawn(charts[key.removesuffix('_thin')], index, key)
             np.testing.assert_allclose(shown, expected, rtol=1e-6, atol=1e-6)
 
 
@@ -115,7 +115,7 @@ def test_the_page_has_the_metrics_of_the_shift_and_its_words_and_other_pages_hav
     for metric in OF_SHIFT:
         assert html.count(f'data-metric="{metric.key}"') == len(runs)
     assert '<h1>Gear shift</h1>' in html
-    assert 'flared' in html and 'the shift starts' in html
+    assert 'off-going' in html and 'the shift starts' in html
     assert re.search(
         r'<title>Gear shift, upshift.*: pi, handover timed, pi, handover model<', html
     )
