@@ -11,26 +11,16 @@ from report.headless_chromium import PICTURE, visit
 
 WIDTH_PX, HEIGHT_PX = 1280, 9000
 """Size of the window in pixels, high enough that nothing scrolls while the picture is taken."""
-BETWEEN_PX = 16
-PLACES = """['#figures details', '#signals', '#signals figure'].map((name) => {
-  const {top, bottom} = document.querySelector(name).getBoundingClientRect();
-  return [Math.floor(top + scrollY), Math.ceil(bottom + scrollY)];
-})"""
+BOTTOM = """Math.ceil(
+  document.querySelector('#signals figure').getBoundingClientRect().bottom + scrollY)"""
 
 
 def main() -> None:
-    """Put the summary and the first row of charts below each other."""
+    """Take the summary and the first row of charts."""
     page, target = sys.argv[1:]
-    seen = visit(Path(page), width=WIDTH_PX, height=HEIGHT_PX, scripts=[PLACES, PICTURE])
-    (further, _), (signals, _), (_, charts) = seen.values[0]
+    seen = visit(Path(page), width=WIDTH_PX, height=HEIGHT_PX, scripts=[BOTTOM, PICTURE])
     whole = Image.open(io.BytesIO(seen.values[1])).convert('RGB')
-    parts = [
-        whole.crop((0, top, whole.width, bottom))
-        for top, bottom in ((0, further), (signals - BETWEEN_PX, charts))
-    ]
-    picture = Image.new('RGB', (whole.width, sum(part.height for part in parts)), 'white')
-    picture.paste(parts[0], (0, 0))
-    picture.paste(parts[1], (0, parts[0].height))
+    picture = whole.crop((0, 0, whole.width, seen.values[0]))
     picture.quantize(256).save(target, optimize=True)
 
 

@@ -22,7 +22,7 @@ _PLACES = {each.key: place for place, each in enumerate(FIGURES)}
 
 
 @dataclass(frozen=True)
-class Cell:
+class MetricCell:
     """Metric of one run, with the value of the thesis where there is one."""
 
     value: float | None
@@ -55,7 +55,7 @@ def comparable_rows(runs: Sequence[ScoredRecording]) -> list[ThesisRow | None]:
 
 def metric_cells(
     column: Metric, runs: Sequence[ScoredRecording], rows: Sequence[ThesisRow | None]
-) -> list[Cell]:
+) -> list[MetricCell]:
     """Return one cell per run; bars have the scale of the largest value, computed or printed."""
     values = [run.scores.metrics[column.key] for run in runs]
     printed = [
@@ -70,10 +70,12 @@ def metric_cells(
     ]
 
 
-def _cell(column: Metric, run: ScoredRecording, row: ThesisRow | None, largest: float) -> Cell:
+def _cell(
+    column: Metric, run: ScoredRecording, row: ThesisRow | None, largest: float
+) -> MetricCell:
     scores = run.scores
     value = scores.metrics[column.key]
-    cell = Cell(
+    cell = MetricCell(
         value,
         number_text(value, column.form),
         0.0 if value is None else abs(value) / largest,
@@ -99,7 +101,7 @@ class MetricColumn:
     """One metric of all runs."""
 
     metric: Metric
-    cells: tuple[Cell, ...]
+    cells: tuple[MetricCell, ...]
     reasons: str
     """Reasons why valid runs have no value, empty where all have one."""
 
@@ -148,7 +150,7 @@ def _column(
     return MetricColumn(metric, tuple(cells), _reasons(cells, runs))
 
 
-def _reasons(cells: 'Sequence[Cell | LimitCell]', runs: Sequence[ScoredRecording]) -> str:
+def _reasons(cells: 'Sequence[MetricCell | LimitCell]', runs: Sequence[ScoredRecording]) -> str:
     of_valid = (cell.why_dash for cell, run in zip(cells, runs, strict=True) if run.scores.valid)
     return '; '.join(dict.fromkeys(filter(None, of_valid)))
 
