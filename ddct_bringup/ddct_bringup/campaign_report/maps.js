@@ -6,6 +6,8 @@ addEventListener('drawn', ({detail: views}) => {
   const LINE = 14, LETTER = 6.2;
   const HATCHES = {rising: '/', falling: '\\', level: '-', upright: '|', crossed: 'x', grid: '+'};
   const UNDEFINED = 'no value';
+  // Readable on a light and on a dark page, and on paper from either.
+  const GROUND = '#80808020', INK = '#000000', PAPER = '#ffffffe0';
   const choice = Object.fromEntries(['map', 'quantity'].map((name) => [name, document.getElementById(name)]));
   const detail = document.querySelector('.detail');
   const advice = detail.textContent;
@@ -30,7 +32,6 @@ addEventListener('drawn', ({detail: views}) => {
   const kindOf = (word) => Object.keys(HATCHES)[words.indexOf(word) % Object.keys(HATCHES).length];
   const stateText = (state) => state.replace('_', ' ');
   const number = (value, digits = 12) => String(Number(value.toPrecision(digits))).replace('-', '\u2212');
-  const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
   function sourceOf(chart, name) {
     return chart.model.renderers.find((each) => each.name === name).data_source;
@@ -95,13 +96,12 @@ addEventListener('drawn', ({detail: views}) => {
       x: x(panel.at[0][at]),
       y: y(map.keys[1] ? panel.at[1][at] : 0),
     }));
-    const ground = style('--panel');
     const columns = {
       x: cells.map((cell) => cell.x),
       y: cells.map((cell) => cell.y),
       width: cells.map(() => 1),
       height: cells.map(() => 1),
-      colour: cells.map((cell) => (cell.state ? ground : colourOf(cell.value, quantity))),
+      colour: cells.map((cell) => (cell.state ? GROUND : colourOf(cell.value, quantity))),
       hatch: cells.map((cell) => HATCHES[kindOf(cell.state)] ?? ' '),
       mark: cells.map((cell) => (cell.state ? 'square' : 'circle')),
       text: cells.map((cell) => cell.text),
@@ -120,8 +120,8 @@ addEventListener('drawn', ({detail: views}) => {
       x: shown.map((each) => (each.from + each.to) / 2),
       y: shown.map((each) => each.y),
       word: shown.map((each) => each.text),
-      colour: shown.map((each) => (each.colour ? inkOn(each.colour) : style('--ink'))),
-      ground: shown.map((each) => each.colour || ground),
+      colour: shown.map((each) => (each.colour ? inkOn(each.colour) : INK)),
+      ground: shown.map((each) => each.colour || PAPER),
     };
   }
 
@@ -180,6 +180,6 @@ addEventListener('drawn', ({detail: views}) => {
     select.disabled = false;
     select.addEventListener('change', show);
   });
-  ['resize', 'colours'].forEach((event) => addEventListener(event, show));
+  addEventListener('resize', show);
   show();
 });

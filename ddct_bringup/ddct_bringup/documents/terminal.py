@@ -3,6 +3,7 @@
 """Documents on the terminal: their tables, remarks and notes, in the order of the page."""
 
 import sys
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TextIO
@@ -20,6 +21,9 @@ from ddct_plant.program import table as text
 from ddct_plant.program.printed_table import print_note, print_table
 from ddct_plant.program.table import PURE
 
+_MOST_IN_GROUP = 3
+"""Largest number of columns in groups that a table has side by side."""
+
 
 def print_document(document: Document, stream: TextIO | None = None) -> None:
     """
@@ -35,7 +39,8 @@ def print_document(document: Document, stream: TextIO | None = None) -> None:
             print(file=stream)
         after_text = is_text
         if isinstance(block, Table):
-            print_table(text_table(block, document.complete), stream)
+            for part in _parts(block):
+                print_table(text_table(part, document.complete), stream)
         elif isinstance(block, Remarks):
             for line in [f'{block.title}:', *block.lines] if block.alarming else block.lines:
                 print_note(line, stream)
@@ -46,6 +51,22 @@ def print_document(document: Document, stream: TextIO | None = None) -> None:
                 print(f'  {block.command}', file=stream)  # in one line, so that it can be copied
             if block.after:
                 print_note(block.after, stream)
+
+
+def _parts(table: Table) -> Iterator[Table]:
+    """Yield a table, or where it has wide groups of columns one table for each group."""
+    groups = Counter(column.group for column in table.columns if column.group)
+    if max(groups.values(), default=0) <= _MOST_IN_GROUP:
+        yield table
+        return
+    for group in groups:
+        places = [at for at, each in enumerate(table.columns) if each.group in ('', group)]
+        yield replace(
+            table,
+            title=f'{table.title}, {group}',
+            columns=[replace(table.columns[at], group='') for at in places],
+            rows=[[row[at] for at in places] for row in table.rows],
+        )
 
 
 def printed_blocks(blocks: Sequence[Block], title: str = '') -> Iterator[Table | Remarks | Note]:
