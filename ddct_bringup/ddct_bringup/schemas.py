@@ -45,7 +45,7 @@ SUFFIX = '.schema.json'
 
 
 @dataclass(frozen=True)
-class Document:
+class JsonDocument:
     """JSON that programs write: what it is, and the type that describes it."""
 
     title: str
@@ -60,24 +60,24 @@ class Document:
         return json_schema(self.kind, self.title, self.others)
 
 
-def _manifest(kind: Kind, plan: type) -> Document:
+def _manifest(kind: Kind, plan: type) -> JsonDocument:
     others = {
         'schema_version': Literal[MANIFEST_VERSION],
         'kind': Literal[kind],
         'plan': plan,
         'campaigns': Mapping[str, CampaignPlan],
     }
-    return Document(f'manifest.json of the kind {kind}', Manifest, others)
+    return JsonDocument(f'manifest.json of the kind {kind}', Manifest, others)
 
 
-def _of_version(title: str, kind: type, version: int) -> Document:
-    return Document(title, kind, {'schema_version': Literal[version]})
+def _of_version(title: str, kind: type, version: int) -> JsonDocument:
+    return JsonDocument(title, kind, {'schema_version': Literal[version]})
 
 
-DOCUMENTS: Mapping[str, Document] = {
-    'scores': Document('scores.json; --json of compare, score', ScoresDocument),
-    'frequency': Document('frequency.json; --json of design margins', FrequencyEvidence),
-    'timing': Document('timing.json of a bag', RunTiming),
+DOCUMENTS: Mapping[str, JsonDocument] = {
+    'scores': JsonDocument('scores.json; --json of compare, score', ScoresDocument),
+    'frequency': JsonDocument('frequency.json; --json of design margins', FrequencyEvidence),
+    'timing': JsonDocument('timing.json of a bag', RunTiming),
     'manifest_runs': _manifest(RUNS, RunsPlan),
     'manifest_campaign': _manifest(CAMPAIGN, NoPlan),
     'manifest_benchmark': _manifest(BENCHMARK, BenchmarkPlan),
@@ -85,20 +85,22 @@ DOCUMENTS: Mapping[str, Document] = {
     'campaign': _of_version('summary.json; --json of campaign', SummaryFile, SUMMARY_VERSION),
     'benchmark': _of_version('result.json of benchmark', Result, RESULT_VERSION),
     'benchmark_with_times': _of_version('--json of benchmark', ResultWithTimes, RESULT_VERSION),
-    'update_times': Document('timing.json of benchmark', UpdateTimesFile),
+    'update_times': JsonDocument('timing.json of benchmark', UpdateTimesFile),
     'tune': _of_version('front.json; --json of tune', TuningResult, FRONT_VERSION),
-    'limit': Document('--json of limit', LimitDocument),
+    'limit': JsonDocument('--json of limit', LimitDocument),
     'sweep': _of_version('--json of sweep', SweepDocument, SWEEP_VERSION),
-    'replay': Document('--json of campaign replay', ReplayDocument),
-    'verify': Document('--json of verify, of one result', FolderDocument),
-    'verify_several': Document('--json of verify, of several results', FoldersDocument),
-    'identify': Document('--json of identify', IdentificationDocument),
-    'identify_log': Document('--json of identify --from', LogFitDocument),
-    'check_controller': Document('--json of check-controller', CheckReport),
-    'numbers': Document('--json of reproduce numbers', NumbersDocument),
-    'studies': Document('--json of reproduce studies', Mapping[str, WrittenStudy]),
-    'benchmark_packaged': Document('--json of benchmark --packaged', Mapping[str, WrittenTable]),
-    'plant': Document('--json of design plant', PlantOnPaper),
+    'replay': JsonDocument('--json of campaign replay', ReplayDocument),
+    'verify': JsonDocument('--json of verify, of one result', FolderDocument),
+    'verify_several': JsonDocument('--json of verify, of several results', FoldersDocument),
+    'identify': JsonDocument('--json of identify', IdentificationDocument),
+    'identify_log': JsonDocument('--json of identify --from', LogFitDocument),
+    'check_controller': JsonDocument('--json of check-controller', CheckReport),
+    'numbers': JsonDocument('--json of reproduce numbers', NumbersDocument),
+    'studies': JsonDocument('--json of reproduce studies', Mapping[str, WrittenStudy]),
+    'benchmark_packaged': JsonDocument(
+        '--json of benchmark --packaged', Mapping[str, WrittenTable]
+    ),
+    'plant': JsonDocument('--json of design plant', PlantOnPaper),
 }
 """Documents by the name of their schema."""
 

@@ -9,7 +9,7 @@ from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_controllers.registry import make_controller
 from ddct_plant.files.json_records import to_json
 from ddct_plant.models.actuator import PRINTED_ACTUATOR, ActuatorParameters
-from ddct_plant.program.table import Table
+from ddct_plant.program.table import TextTable
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
@@ -18,10 +18,10 @@ ACTUATORS = (PRINTED_ACTUATOR, ActuatorParameters(0.02, 0.6), ActuatorParameters
 _SHOWN = ('gain_margin_db', 'phase_margin_deg', 'delay_margin_s', 'sensitivity_peak')
 
 
-def other_actuators() -> Table:
+def other_actuators() -> TextTable:
     """Return the margins of each design with each actuator in the scenario `thesis`."""
     quantities = [LOOP_QUANTITY_OF[key] for key in _SHOWN]
-    return Table(
+    return TextTable(
         '',
         ('controller', 'delay ms', 'bandwidth', 'stable', *(each.heading for each in quantities)),
         [_row(name, actuator) for name in DESIGNS for actuator in ACTUATORS],

@@ -4,10 +4,10 @@
 
 from collections.abc import Sequence
 
-from ddct_plant.program.table import Table
+from ddct_plant.program.table import TextTable
 
 
-def as_markdown(table: Table) -> str:
+def as_markdown(table: TextTable) -> str:
     """Return a table as Markdown, with a final line end."""
     separator = ['---'] * len(table.headers)
     return ''.join(f'{_line(cells)}\n' for cells in (table.headers, separator, *table.rows))

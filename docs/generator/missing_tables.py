@@ -14,7 +14,7 @@ from ddct_plant.fail_safe.request_watch import (
     FailSafeSettings,
 )
 from ddct_plant.graph.sole_publishers import OPEN_S
-from ddct_plant.program.table import Table
+from ddct_plant.program.table import TextTable
 from ddct_plant.ticks.join import MOST_WAITING
 from ddct_plant.ticks.realtime_owner import RECORDER_PATIENCE_S
 from ddct_plant.ticks.tick_owner import RESEND_AFTER_S
@@ -23,12 +23,14 @@ _RAMP = FailSafeSettings().fail_safe_ramp_n_m_s
 HEADERS = ('node', 'what is missing', 'for longer than', 'what it does', 'it ends')
 
 
-def missing_tables() -> Mapping[str, Table]:
+def missing_tables() -> Mapping[str, TextTable]:
     """Return the tables of both modes, and that of what `bringup` sees."""
     return {
-        'realtime': Table('', HEADERS, _realtime()),
-        'lockstep': Table('', HEADERS, _lockstep()),
-        'bringup': Table('', ('what is missing', 'for longer than', 'what follows'), _bringup()),
+        'realtime': TextTable('', HEADERS, _realtime()),
+        'lockstep': TextTable('', HEADERS, _lockstep()),
+        'bringup': TextTable(
+            '', ('what is missing', 'for longer than', 'what follows'), _bringup()
+        ),
     }
 
 

@@ -11,7 +11,7 @@ from ddct_controllers.mpc.program.settings import program_options
 from ddct_controllers.registry import controller_spec
 from ddct_plant.base.option import option_rows
 from ddct_plant.base.options import OptionGroup, Options, group_of, options_of
-from ddct_plant.program.table import Table
+from ddct_plant.program.table import TextTable
 from ddct_plant.scenario.choices.settings import SETTINGS
 from ddct_plant.scenario.nouns.keys import CAR, DRIVE, SCENARIO, owner_of
 from ddct_plant.scenario.scenario import Scenario
@@ -20,10 +20,10 @@ _HEADERS = ('key', 'unit', 'default', 'range', 'meaning', 'source')
 """Headers of the rows that `option_rows` returns."""
 
 
-def _keys(owner: str) -> Table:
+def _keys(owner: str) -> TextTable:
     """Return the keys of a scenario that belong to the car, the drive or the file itself."""
     rows = [_code(row) for row in _rows(Scenario) if owner_of(row[0]) == owner]
-    return Table('', _HEADERS, rows)
+    return TextTable('', _HEADERS, rows)
 
 
 def _rows(group: type[OptionGroup]) -> list[tuple[str, ...]]:
@@ -37,7 +37,7 @@ def _rows(group: type[OptionGroup]) -> list[tuple[str, ...]]:
     return rows
 
 
-def _controllers(*names: str, without: Sequence[str] = ()) -> Table:
+def _controllers(*names: str, without: Sequence[str] = ()) -> TextTable:
     """Return the options of controllers; a default that differs between them is given for each."""
     declared: dict[str, Options] = {name: controller_spec(name).options or {} for name in names}
     rows = []
@@ -53,12 +53,12 @@ def _controllers(*names: str, without: Sequence[str] = ()) -> Table:
             texts = (f'{text} ({", ".join(those)})' for text, those in having.items())
             row = (*row[:2], ', '.join(texts), *row[3:])
         rows.append(_code(row)[:-1])
-    return Table('', _HEADERS[:-1], rows)
+    return TextTable('', _HEADERS[:-1], rows)
 
 
-def _without_source(options: Options, prefix: str = '') -> Table:
+def _without_source(options: Options, prefix: str = '') -> TextTable:
     rows = option_rows(options, prefix)
-    return Table('', _HEADERS[:-1], [_code(row)[:-1] for row in rows])
+    return TextTable('', _HEADERS[:-1], [_code(row)[:-1] for row in rows])
 
 
 def _code(row: Sequence[str]) -> tuple[str, ...]:

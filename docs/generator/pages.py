@@ -12,13 +12,13 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.program.table import Table
+from ddct_plant.program.table import TextTable
 from generator.markdown import as_markdown as markdown_of
 
 DOCS = Path(__file__).resolve().parents[1]
 
 
-def as_markdown(tables: Mapping[str, Table]) -> dict[str, str]:
+def as_markdown(tables: Mapping[str, TextTable]) -> dict[str, str]:
     """Return the text of each table by name, with a final line end."""
     return {name: markdown_of(table) for name, table in tables.items()}
 
@@ -39,7 +39,7 @@ def rows_of(shown: str) -> list[tuple[str, ...]]:
     return [tuple(line[2:-2].split(' | ')) for line in shown.splitlines()[2:]]
 
 
-def fill_pages(kind: str, tables: Mapping[str, Table], docs: Path = DOCS) -> list[Path]:
+def fill_pages(kind: str, tables: Mapping[str, TextTable], docs: Path = DOCS) -> list[Path]:
     """
     Write every table of a kind in its place and return the pages that have changed.
 

@@ -11,7 +11,7 @@ from rclpy.context import Context
 from ddct_bringup.processes.graph_nodes import NODE_PROGRAMS
 from ddct_plant.graph.arguments import init_ros
 from ddct_plant.graph.node import GraphNode
-from ddct_plant.program.table import Table
+from ddct_plant.program.table import TextTable
 from ddct_plant.scenario.choices.scenarios import CHOICES
 from ddct_plant.scenario.choices.settings import SETTINGS
 
@@ -22,7 +22,7 @@ OF_CONTROLLER = 'gains.'
 """Prefix of the parameters that differ with the chosen controller."""
 
 
-def parameter_tables() -> dict[str, Table]:
+def parameter_tables() -> dict[str, TextTable]:
     """Return the parameters of each node, by its name, without the shared ones."""
     tables = {}
     with patch.dict(os.environ, ROS_AUTOMATIC_DISCOVERY_RANGE='OFF'):
@@ -33,7 +33,7 @@ def parameter_tables() -> dict[str, Table]:
                 node_class = getattr(importlib.import_module(spec.module), spec.class_name)
                 node: GraphNode = node_class(context=context)
                 if rows := _rows(node):
-                    tables[spec.name] = Table('', HEADERS, rows)
+                    tables[spec.name] = TextTable('', HEADERS, rows)
                 node.destroy_node()
         finally:
             context.try_shutdown()

@@ -8,12 +8,12 @@ from ddct_bringup.metrics.catalogue import FIGURES, OTHERS
 from ddct_bringup.metrics.metric import Metric
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.of_car import OF_CAR
-from ddct_plant.program.table import Table
+from ddct_plant.program.table import TextTable
 
 _HEADERS = ('key', 'in tables', 'unit', 'what it is', 'no value when')
 
 
-def score_tables() -> dict[str, Table]:
+def score_tables() -> dict[str, TextTable]:
     """Return the tables by name."""
     limits = [
         (
@@ -27,12 +27,12 @@ def score_tables() -> dict[str, Table]:
     return {
         'figures': _table_of('Figures', FIGURES),
         'metrics': _table_of('Metrics', OTHERS),
-        'limits': Table('Limits', ('metric', 'limit', 'holds for', 'source'), limits),
+        'limits': TextTable('Limits', ('metric', 'limit', 'holds for', 'source'), limits),
     }
 
 
-def _table_of(title: str, metrics: Iterable[Metric]) -> Table:
+def _table_of(title: str, metrics: Iterable[Metric]) -> TextTable:
     rows = [
         (f'`{each.key}`', each.symbol, each.unit, each.meaning, each.undefined) for each in metrics
     ]
-    return Table(title, _HEADERS, rows)
+    return TextTable(title, _HEADERS, rows)

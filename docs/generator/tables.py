@@ -26,7 +26,7 @@ from ddct_controllers.workflows.plant_on_paper import plant_on_paper
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.linear.sampling import discretise_zoh
-from ddct_plant.program.table import Table
+from ddct_plant.program.table import TextTable
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import KnownSettings, RunSettings
 from generator.actuator_tables import other_actuators
@@ -35,7 +35,7 @@ from generator.score_tables import score_tables
 from generator.tuning_tables import tuning_tables
 
 
-def h_infinity_tables() -> Mapping[str, Table]:
+def h_infinity_tables() -> Mapping[str, TextTable]:
     """Return our designs together with the printed controllers."""
     corners = PlantCorners()
     records = [
@@ -59,7 +59,7 @@ def _both_loops(controller: FactoredTransferFunction) -> LoopsEntry:
     )
 
 
-def declared_parameters() -> Mapping[str, Table]:
+def declared_parameters() -> Mapping[str, TextTable]:
     """Return the parameters of the nodes."""
     # Only here: it needs ROS, which the other tables do without.
     from generator.parameter_tables import parameter_tables
@@ -67,18 +67,18 @@ def declared_parameters() -> Mapping[str, Table]:
     return parameter_tables()
 
 
-def plant_tables() -> Mapping[str, Table]:
+def plant_tables() -> Mapping[str, TextTable]:
     """Return the plant of the scenario `thesis`."""
     return paper_tables(plant_on_paper(load_scenario('thesis')))
 
 
-def sampled_loops() -> Table:
+def sampled_loops() -> TextTable:
     """Return the margins of every linear controller in the scenario `thesis`, new clutch."""
     settings = RunSettings(KnownSettings(load_scenario('thesis')))
     return margins_table(frequency_evidence(controller_names(), settings), settings)
 
 
-def tables_of_missing_messages() -> Mapping[str, Table]:
+def tables_of_missing_messages() -> Mapping[str, TextTable]:
     """Return what nodes do when a message is missing, with the times of the code."""
     # Only here: the recorder needs ROS, which the other tables do without.
     from generator.missing_tables import missing_tables
@@ -86,7 +86,7 @@ def tables_of_missing_messages() -> Mapping[str, Table]:
     return missing_tables()
 
 
-TABLES: Mapping[str, Callable[[], Mapping[str, Table]]] = {
+TABLES: Mapping[str, Callable[[], Mapping[str, TextTable]]] = {
     'options': lambda: OPTION_TABLES,
     'parameters': declared_parameters,
     'scores': score_tables,

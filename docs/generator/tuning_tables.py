@@ -9,14 +9,14 @@ from ddct_bringup.tuning.report.document import effects_table, entries_table
 from ddct_bringup.tuning.result import FrontEntry, TuningResult
 from ddct_bringup.tuning.specification.packaged_specs import packaged_specs
 from ddct_plant.files.json_records import read_json
-from ddct_plant.program.table import Table
+from ddct_plant.program.table import TextTable
 from generator.pages import DOCS
 
 FOLDER = DOCS / 'examples' / 'tuning'
 """Folder with the results, by the names of the specifications."""
 
 
-def tuning_tables() -> Mapping[str, Table]:
+def tuning_tables() -> Mapping[str, TextTable]:
     """Return the front and the effects of each packaged tuning."""
     found = {}
     for name in packaged_specs():

@@ -21,7 +21,7 @@ from ddct_bringup.reproduction.numbers.gate import NumbersDocument
 from ddct_bringup.reproduction.studies.study import WrittenStudy
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import read_json
-from ddct_plant.program.table import Table, WrittenTable
+from ddct_plant.program.table import TextTable, WrittenTable
 
 FILES: Mapping[str, Any] = {
     'numbers': NumbersDocument,
@@ -47,7 +47,7 @@ def with_results(text: str, results: Path, pictures: Path) -> str:
         except KeyError:
             raise DdctError(f'{results / file}.json has no table {name}: make site') from None
         rows = [[row[header] for header in table.headers] for row in table.rows]
-        written = as_markdown(Table(table.title, table.headers, rows))
+        written = as_markdown(TextTable(table.title, table.headers, rows))
         picture = results / f'{name}.png'
         if not picture.is_file():
             return written

@@ -7,7 +7,7 @@ from pathlib import Path
 from generator.markdown import as_markdown
 
 from ddct_bringup.schemas import DOCUMENTS, SUFFIX, write_schemas
-from ddct_plant.program.table import Table
+from ddct_plant.program.table import TextTable
 
 MARK = '<!-- schemas -->'
 """Line of a page where the site has the table."""
@@ -22,4 +22,4 @@ def with_schemas(text: str, folder: Path) -> str:
         (document.title, f'[{name}{SUFFIX}]({folder.name}/{name}{SUFFIX})')
         for name, document in DOCUMENTS.items()
     ]
-    return text.replace(MARK, as_markdown(Table('', ('what', 'schema'), rows)))
+    return text.replace(MARK, as_markdown(TextTable('', ('what', 'schema'), rows)))

@@ -19,11 +19,11 @@ from generator.tuning_tables import FOLDER, tuning_tables
 from ddct_bringup.tuning.specification.spec import read_tuning_spec
 from ddct_controllers.registry import controller_spec
 from ddct_plant.base.errors import DdctError
-from ddct_plant.program.table import Table
+from ddct_plant.program.table import TextTable
 
 TABLES = {
-    'first': Table('', ('a', 'b'), [('1', 'x|y')]),
-    'second': Table('', ('c',), [('2',)]),
+    'first': TextTable('', ('a', 'b'), [('1', 'x|y')]),
+    'second': TextTable('', ('c',), [('2',)]),
 }
 MARKED = 'Text.\n<!-- trial: {} -->\nold\n<!-- end -->\nMore.\n'
 

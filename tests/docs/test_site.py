@@ -17,7 +17,7 @@ from ddct_bringup.reproduction.studies.study import WrittenStudy
 from ddct_bringup.schemas import DOCUMENTS
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import write_json
-from ddct_plant.program.table import Table
+from ddct_plant.program.table import TextTable
 
 PAGES_OF_RESULTS = sorted(
     str(each.relative_to(ROOT).with_suffix(''))
@@ -42,7 +42,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for file in FILES:
         names = sorted(name for each, name in _marks() if each == file)
         tables = {
-            name: Table(f'Title of {name}', ('key', 'value'), [('a | b', f'{file} {name}')])
+            name: TextTable(f'Title of {name}', ('key', 'value'), [('a | b', f'{file} {name}')])
             for name in names
         }
         written: object = {name: table.written for name, table in tables.items()}

@@ -26,7 +26,7 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import write_json
 from ddct_plant.program.command_line import complain
 from ddct_plant.program.printed_table import print_tables
-from ddct_plant.program.table import Table
+from ddct_plant.program.table import TextTable
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.scenario import Scenario
 
@@ -101,8 +101,8 @@ def require_packaged(found: Fit, packaged: Scenario) -> None:
         )
 
 
-def _fits_table(fits: Sequence[Fit]) -> Table:
-    return Table(
+def _fits_table(fits: Sequence[Fit]) -> TextTable:
+    return TextTable(
         'Fits',
         (
             *('window to s', 'objective', 'worst, tolerances', 'PI loop 1/s'),
@@ -121,10 +121,10 @@ def _fits_table(fits: Sequence[Fit]) -> Table:
     )
 
 
-def _parameter_table(best: Fit, packaged: Scenario) -> Table:
+def _parameter_table(best: Fit, packaged: Scenario) -> TextTable:
     errors = ['-', *(f'{error:.2g}' for error in best.standard_errors())]
     shares = ['-', *(f'{100.0 * share:+.2f}' for share in differences(best, packaged).values())]
-    return Table(
+    return TextTable(
         'Lowest objective with a stable PI loop, beside the packaged scenario',
         (
             *('parameter', 'lower', 'upper', 'fitted', 'packaged', 'difference, % of range'),
@@ -152,7 +152,7 @@ def _parameter_table(best: Fit, packaged: Scenario) -> Table:
     )
 
 
-def _residual_table(best: Fit) -> Table:
+def _residual_table(best: Fit) -> TextTable:
     rows = []
     residuals = iter(best.residuals)
     for row in ROWS:
@@ -166,7 +166,7 @@ def _residual_table(best: Fit) -> Table:
                     f'{100.0 * TOLERANCES[name]:g}',
                 )
             )
-    return Table(
+    return TextTable(
         'Fit residuals (not reproductions: these numbers were fitted)',
         ('row', 'figure', 'printed', 'fitted', 'residual, %', 'tolerance, %'),
         rows,

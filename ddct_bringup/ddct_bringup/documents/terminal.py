@@ -17,9 +17,8 @@ from ddct_bringup.documents.document import (
     Section,
     Table,
 )
-from ddct_plant.program import table as text
 from ddct_plant.program.printed_table import print_note, print_table
-from ddct_plant.program.table import PURE
+from ddct_plant.program.table import PURE, TextTable
 
 _MOST_IN_GROUP = 3
 """Largest number of columns in groups that a table has side by side."""
@@ -81,10 +80,10 @@ def printed_blocks(blocks: Sequence[Block], title: str = '') -> Iterator[Table |
             yield block
 
 
-def text_table(table: Table, complete: str = '') -> text.Table:
+def text_table(table: Table, complete: str = '') -> TextTable:
     """Return the texts of a table, for the terminal and for pages of the documentation."""
     cells = table.cells
-    return text.Table(
+    return TextTable(
         table.title,
         [column.heading for column in table.columns],
         [[_text(cell) for cell in row] for row in cells],

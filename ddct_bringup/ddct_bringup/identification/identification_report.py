@@ -13,7 +13,7 @@ from ddct_bringup.identification.fit import CoefficientFit, Identification
 from ddct_plant.files.json_records import Inline
 from ddct_plant.models.parameters import SYMBOLS_AND_UNITS
 from ddct_plant.program.printed_table import print_note, print_tables
-from ddct_plant.program.table import UNDEFINED, Table, Weight, text_or_dash, with_reasons
+from ddct_plant.program.table import UNDEFINED, TextTable, Weight, text_or_dash, with_reasons
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,7 @@ def print_identification(
 ) -> None:
     """Print parameters, coefficients and checks as tables."""
     tables = [
-        Table(
+        TextTable(
             'Driveline parameters',
             ('parameter', 'symbol', 'value', 'std', 'lowest', 'highest', 'unit'),
             [
@@ -132,7 +132,7 @@ def print_identification(
             ],
             weights=(*(Weight.IDENTIFYING, Weight.USEFUL, Weight.NEEDED, Weight.DETAIL),),
         ),
-        Table(
+        TextTable(
             'Printed coefficients',
             ('function', 'coefficient', 'printed', 'computed', 'residual, half-units'),
             [
@@ -147,7 +147,7 @@ def print_identification(
             ],
             weights=(Weight.IDENTIFYING, Weight.IDENTIFYING),
         ),
-        Table(
+        TextTable(
             'Checks',
             ('check', 'value', 'lowest', 'highest', 'passed'),
             [

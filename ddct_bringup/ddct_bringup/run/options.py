@@ -14,7 +14,7 @@ from ddct_plant.base.option import option_rows
 from ddct_plant.base.options import Option, require_known
 from ddct_plant.files.input_file import located
 from ddct_plant.program.printed_table import print_note, print_table
-from ddct_plant.program.table import Table, Weight, with_reasons
+from ddct_plant.program.table import TextTable, Weight, with_reasons
 from ddct_plant.scenario.choices.scenarios import CHOICES, packaged_names
 from ddct_plant.scenario.choices.settings import ARCHITECTURES, MODES
 
@@ -63,7 +63,7 @@ def print_choices() -> None:
     print_table(controller_options_table())
 
 
-def controller_options_table() -> Table:
+def controller_options_table() -> TextTable:
     """Return the table of controllers' options, a row for all that declare the same option."""
     takers: dict[tuple[str, ...], list[str]] = {}
     for name in controller_names():
@@ -73,7 +73,7 @@ def controller_options_table() -> Table:
             options = {'-': Option(None, str(error))}
         for row in option_rows(options):
             takers.setdefault(row[:-1], []).append(name)
-    table = Table(
+    table = TextTable(
         'options of controllers, set by --set controllers.NAME.KEY=VALUE',
         ('KEY', 'NAME', 'default', 'meaning', 'unit', 'range'),
         [

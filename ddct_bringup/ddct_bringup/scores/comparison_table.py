@@ -27,7 +27,7 @@ from ddct_bringup.thesis.table_5_1 import (
     is_thesis_run,
     thesis_row,
 )
-from ddct_plant.program.table import Column, Quantity, Weight
+from ddct_plant.program.table import Quantity, TextColumn, Weight
 from ddct_plant.scenario.differences import changed_values, scenario_title
 from ddct_plant.scenario.settings import RunSettings
 
@@ -57,7 +57,9 @@ def print_comparison(
     columns = (
         CONTROLLER,
         *(each for column, quantity in ours for each in (column, _thesis(quantity))),
-        Column('row', '', _use, number=False, undefined=lambda run: _NO_ROW, weight=Weight.USEFUL),
+        TextColumn(
+            'row', '', _use, number=False, undefined=lambda run: _NO_ROW, weight=Weight.USEFUL
+        ),
         FINAL_SLIP,
         *beside,
         STATE,
@@ -88,7 +90,7 @@ def _thesis(quantity: Quantity) -> RunColumn:
         row = thesis_row(run.controller or '')
         return row.printed_values()[quantity.key] if row else None
 
-    return Column('thesis', '.2f', value, undefined=lambda run: _NO_ROW)
+    return TextColumn('thesis', '.2f', value, undefined=lambda run: _NO_ROW)
 
 
 def _use(run: ScoredRun) -> str | None:

@@ -12,10 +12,10 @@ from ddct_bringup.metrics.metric import Metric
 from ddct_bringup.scores.run_notes import in_ms, run_notes
 from ddct_bringup.scores.scored_run import YARDSTICK, ScoredRun
 from ddct_plant.program.printed_table import print_table
-from ddct_plant.program.table import Column, Weight, table_of
+from ddct_plant.program.table import TextColumn, Weight, table_of
 from ddct_plant.scenario.differences import scenario_title
 
-RunColumn = Column[ScoredRun]
+RunColumn = TextColumn[ScoredRun]
 """One column of a table of runs."""
 
 
@@ -38,7 +38,7 @@ def metric(
         # The format of a count takes no float.
         return found if found is None or factor == 1.0 else factor * found
 
-    return Column(
+    return TextColumn(
         heading or f'{quantity.symbol}\n{quantity.unit}',
         form or quantity.form,
         value,
@@ -57,21 +57,23 @@ def _no_bound(quantity: Metric, run: ScoredRun) -> bool:
     return quantity is JERK_OVER_LEAST and run.least_is_bound is False
 
 
-BAG: RunColumn = Column('bag', '', lambda run: run.bag, number=False, weight=Weight.IDENTIFYING)
-CONTROLLER: RunColumn = Column(
+BAG: RunColumn = TextColumn(
+    'bag', '', lambda run: run.bag, number=False, weight=Weight.IDENTIFYING
+)
+CONTROLLER: RunColumn = TextColumn(
     'controller', '', lambda run: run.controller, number=False, weight=Weight.IDENTIFYING
 )
-_WEAR: RunColumn = Column(
+_WEAR: RunColumn = TextColumn(
     'wear', 'g', lambda run: run.facts.wear_gain if run.facts else None, weight=Weight.USEFUL
 )
 _SHIFT_CONDITIONS: tuple[RunColumn, ...] = (
-    Column(
+    TextColumn(
         'off-going\nwear',
         'g',
         lambda run: run.facts.off_going_wear_gain if isinstance(run.facts, RunFacts) else None,
         weight=Weight.DETAIL,
     ),
-    Column(
+    TextColumn(
         'handover',
         '',
         lambda run: run.facts.handover if isinstance(run.facts, RunFacts) else None,
@@ -80,7 +82,7 @@ _SHIFT_CONDITIONS: tuple[RunColumn, ...] = (
     ),
 )
 """Columns of the conditions that only a gear shift has."""
-STATE: RunColumn = Column('state', '', lambda run: run.state, number=False)
+STATE: RunColumn = TextColumn('state', '', lambda run: run.state, number=False)
 T_A, TORSION_STD, ACCELERATION_STD = (
     metric(each, f'{each.symbol} {each.unit}\nours') for each in TABLE_5_1
 )
@@ -106,13 +108,13 @@ _OF_LOCK = ('time_to_final_lock_s', 'releases')
 """Figures that a linear clutch never has."""
 _REALTIME: tuple[RunColumn, ...] = (
     metric(METRICS['missed_steps'], 'missed\nsteps'),
-    Column(
+    TextColumn(
         'latest\nms',
         '.2f',
         lambda run: in_ms(run.metrics['worst_lateness_us']),
         undefined=lambda run: _why_null('worst_lateness_us', run),
     ),
-    Column(
+    TextColumn(
         'safe state',
         '',
         lambda run: None if run.safe_state is None else run.safe_state or 'none',
@@ -161,7 +163,7 @@ def print_runs(
     if title is None and len(scenarios) == 1:
         (title,) = scenarios
     if title is None:
-        scenario = Column('scenario', '', _scenario, number=False, weight=Weight.USEFUL)
+        scenario = TextColumn('scenario', '', _scenario, number=False, weight=Weight.USEFUL)
         columns = [columns[0], scenario, *columns[1:]]
     if any(run.facts and run.facts.mode == 'realtime' for run in runs):
         columns = [*columns[:-1], *_REALTIME, columns[-1]]

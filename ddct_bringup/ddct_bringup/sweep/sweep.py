@@ -32,7 +32,7 @@ from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.registry import Chosen, controller_label, controller_spec
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.files.json_records import Inline
-from ddct_plant.program.table import Column, Table, Weight, table_of
+from ddct_plant.program.table import TextColumn, TextTable, Weight, table_of
 from ddct_plant.scenario.differences import scenario_title
 from ddct_plant.scenario.settings import RunSettings
 
@@ -185,7 +185,7 @@ def _row(run: ScoredRow) -> SweptEntry:
     return SweptRun(run.varied, entry.conditions, entry.scores)
 
 
-def sweep_table(sweep: Sweep, runs: Sequence[ScoredRow], metrics: Sequence[Metric]) -> Table:
+def sweep_table(sweep: Sweep, runs: Sequence[ScoredRow], metrics: Sequence[Metric]) -> TextTable:
     """Return the table with a row per run: controller, varied values, metrics and state."""
     title = f'{sweep.conditions}; {sweep.varied}'
     of_runs = [_of_swept(each) for each in (CONTROLLER, *map(metric, metrics), STATE)]
@@ -193,9 +193,9 @@ def sweep_table(sweep: Sweep, runs: Sequence[ScoredRow], metrics: Sequence[Metri
     return table_of(title, columns, runs, complete='--json FILE')
 
 
-def _of_swept(column: RunColumn) -> Column[ScoredRow]:
+def _of_swept(column: RunColumn) -> TextColumn[ScoredRow]:
     """Return the column of the scores of swept runs."""
-    return Column(
+    return TextColumn(
         column.heading,
         column.form,
         lambda run: column.value(run.scores),
@@ -212,9 +212,9 @@ def _no_value(run: ScoredRow, column: RunColumn) -> str:
     return column.undefined(run.scores)
 
 
-def _place(axis: Axis) -> Column[ScoredRow]:
+def _place(axis: Axis) -> TextColumn[ScoredRow]:
     heading = f'{axis.key}\n{axis.unit}' if axis.unit else axis.key
-    return Column(
+    return TextColumn(
         heading,
         '',
         lambda run: value_text(run.varied[axis.key]),

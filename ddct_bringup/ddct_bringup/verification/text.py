@@ -10,7 +10,7 @@ from ddct_bringup.verification.result import RepetitionResult
 from ddct_bringup.verification.states import BOUND, DIFFERENT, NOT_REPEATED, SAME_BITS, SAME_WITHIN
 from ddct_plant.base.errors import printable
 from ddct_plant.program.printed_table import print_table
-from ddct_plant.program.table import Table
+from ddct_plant.program.table import TextTable
 
 _WORDS = {
     SAME_BITS: 'same bits',
@@ -27,7 +27,7 @@ def print_verification(found: Verification) -> None:
     folder = printable(found.folder)
     if found.runs:
         rows = [(run.run, _WORDS[run.state], _detail(run)) for run in found.runs]
-        print_table(Table(f'{folder}, made again', ('what', 'state', 'detail'), rows))
+        print_table(TextTable(f'{folder}, made again', ('what', 'state', 'detail'), rows))
     if found.same:
         # One line, however wide the terminal is, for those who read the last one.
         print(f'{folder}: {len(found.files)} files are as their digests; {_summary(found)}.')

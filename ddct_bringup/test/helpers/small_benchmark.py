@@ -18,7 +18,7 @@ from ddct_bringup.manifest.manifest import MANIFEST
 from ddct_bringup.programs import benchmark
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.timing_and_failure import TIMING_FILE
-from ddct_plant.program.table import Table
+from ddct_plant.program.table import TextTable
 
 SPEC = """\
 controllers: [pi, ls8]
@@ -131,7 +131,7 @@ def content_of(folder: Path) -> dict[str, bytes]:
     }
 
 
-def shown_runs(table: Table, row: int) -> int:
+def shown_runs(table: TextTable, row: int) -> int:
     """Return the number of runs of one controller in a table of states."""
     cells = dict(zip(table.headers, table.rows[row], strict=True))
     others = [] if cells['other states'] == '-' else cells['other states'].split(', ')

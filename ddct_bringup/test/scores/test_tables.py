@@ -18,7 +18,7 @@ from ddct_bringup.scores.run_table import (
     metric,
     print_runs,
 )
-from ddct_plant.program.table import Column
+from ddct_plant.program.table import TextColumn
 from ddct_plant.signals.gain_changes import GainChange
 
 
@@ -172,7 +172,7 @@ def test_a_real_time_run_shows_misses_lateness_and_safe_state_each_in_its_column
 @pytest.mark.parametrize('name', METRICS)
 def test_every_metric_can_be_a_column(name):
     column = metric(METRICS[name])
-    assert isinstance(column, Column)
+    assert isinstance(column, TextColumn)
     assert float(column.text(run(**{name: 2}))) == 2.0
     assert column.text(run()) == '-'
 

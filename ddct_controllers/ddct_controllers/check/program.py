@@ -10,7 +10,7 @@ from ddct_controllers.check.checks import FAIL, Outcome, check_controller
 from ddct_plant.files.output_file import require_place
 from ddct_plant.program.command_line import ProgramParser, complain, run_program, show_and_write
 from ddct_plant.program.printed_table import print_table
-from ddct_plant.program.table import Table, Weight
+from ddct_plant.program.table import TextTable, Weight
 from ddct_plant.scenario.choices.command_line import add_scenario_options
 from ddct_plant.scenario.chosen import scenario_of
 from ddct_plant.scenario.settings import KnownSettings
@@ -64,7 +64,7 @@ def _print(outcomes: Sequence[Outcome]) -> None:
     for each in outcomes:
         alike.setdefault((each.state, each.detail), []).append(each.name)
     rows = [(state, ', '.join(names), detail) for (state, detail), names in alike.items()]
-    print_table(Table('', ('state', 'checks', 'detail'), rows, weights=(Weight.NEEDED,)))
+    print_table(TextTable('', ('state', 'checks', 'detail'), rows, weights=(Weight.NEEDED,)))
 
 
 if __name__ == '__main__':

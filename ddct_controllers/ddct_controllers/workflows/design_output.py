@@ -17,7 +17,7 @@ from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.output_file import STDOUT, require_new, write_text
 from ddct_plant.program.command_line import show_and_write
 from ddct_plant.program.printed_table import print_tables
-from ddct_plant.program.table import Table
+from ddct_plant.program.table import TextTable
 
 OptionTable = Mapping[str, Mapping[str, Any]]
 """Arguments of `add_argument` by the option's name."""
@@ -58,7 +58,7 @@ def free_name(options: argparse.Namespace) -> str:
     return name
 
 
-def show(options: argparse.Namespace, tables: Iterable[Table], record: object) -> None:
+def show(options: argparse.Namespace, tables: Iterable[TextTable], record: object) -> None:
     """Print the tables unless standard output is for the JSON, and write that if requested."""
     show_and_write(options.json, record, partial(print_tables, tables))
 

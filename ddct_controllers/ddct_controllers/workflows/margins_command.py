@@ -23,7 +23,7 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import to_json
 from ddct_plant.program.command_line import complain, show_and_write
 from ddct_plant.program.printed_table import print_note, print_table
-from ddct_plant.program.table import Table, Weight, text_or_dash, with_reasons
+from ddct_plant.program.table import TextTable, Weight, text_or_dash, with_reasons
 from ddct_plant.scenario.choices.command_line import add_scenario_options
 from ddct_plant.scenario.chosen import scenario_of
 from ddct_plant.scenario.differences import changed_values, scenario_title
@@ -99,7 +99,7 @@ def _show(evidence: FrequencyEvidence, settings: RunSettings) -> None:
         print_note(f'Not linear, without a frequency response: {", ".join(others)}')
 
 
-def margins_table(evidence: FrequencyEvidence, settings: RunSettings) -> Table:
+def margins_table(evidence: FrequencyEvidence, settings: RunSettings) -> TextTable:
     """Return a row of quantities for each linear controller of `frequency_evidence`."""
     scenario = settings.scenario
     changed = scenario_title(scenario.name, changed_values(scenario))
@@ -110,7 +110,7 @@ def margins_table(evidence: FrequencyEvidence, settings: RunSettings) -> Table:
     )
     rows = [_row(entry, settings.case.wear_gain) for entry in linear_entries(evidence)]
     title = f'Sampled loop, wear gain {settings.case.wear_gain:g}, {changed}'
-    table = Table(
+    table = TextTable(
         title, headers, rows, numbers=(False, False), weights=_WEIGHTS, complete='--json FILE'
     )
     return with_reasons(table, _dash_reason)

@@ -14,7 +14,7 @@ from ddct_plant.files.json_records import write_json
 from ddct_plant.files.output_file import require_place, write_bytes, write_text
 from ddct_plant.program.command_line import show_and_write
 from ddct_plant.program.printed_table import print_tables
-from ddct_plant.program.table import Table
+from ddct_plant.program.table import TextTable
 from ddct_plant.scenario.choices.command_line import add_scenario_options
 from ddct_plant.scenario.chosen import scenario_of
 
@@ -78,7 +78,7 @@ def _export(file: str, paper: PlantOnPaper) -> None:
         write_bytes(file, content.getvalue())
 
 
-def paper_tables(paper: PlantOnPaper) -> dict[str, Table]:
+def paper_tables(paper: PlantOnPaper) -> dict[str, TextTable]:
     """Return the tables of a plant on paper by name."""
     space = paper.state_space
     columns = (*STATES, *INPUTS)
@@ -91,7 +91,7 @@ def paper_tables(paper: PlantOnPaper) -> dict[str, Table]:
         for output, c, d in zip(space.outputs, space.C, space.D, strict=True)
     ]
     return {
-        'parameters': Table(
+        'parameters': TextTable(
             f'Parameters of the driveline, scenario {paper.scenario}',
             ('symbol', 'value', 'unit', 'scenario key'),
             [
@@ -99,15 +99,15 @@ def paper_tables(paper: PlantOnPaper) -> dict[str, Table]:
                 for symbol, each in paper.parameters.items()
             ],
         ),
-        'state_space': Table(
+        'state_space': TextTable(
             'A and B: each row is the sum of its numbers times the column',
             ('', *columns),
             dynamics,
         ),
-        'outputs': Table(
+        'outputs': TextTable(
             'C and D: each row is the sum of its numbers times the column', ('', *columns), outputs
         ),
-        'transfer_functions': Table(
+        'transfer_functions': TextTable(
             f'Transfer functions, s in rad/s; a delay of {paper.actuator_delay_s:g} s before G_a',
             ('', 'from', 'to', 'function'),
             [
@@ -115,7 +115,7 @@ def paper_tables(paper: PlantOnPaper) -> dict[str, Table]:
                 for name, each in paper.transfer_functions.items()
             ],
         ),
-        'c_fol': Table(
+        'c_fol': TextTable(
             'C_fOL: the sum of each signal times its factor',
             ('signal', 'factor', 'unit of the factor'),
             [(name, f'{each.factor:.8g}', each.unit) for name, each in paper.c_fol.items()],

@@ -19,7 +19,7 @@ from rich.table import Table as Grid
 from rich.text import Text
 
 from ddct_plant.base.errors import printable
-from ddct_plant.program.table import UNDEFINED, Table, Weight
+from ddct_plant.program.table import UNDEFINED, TextTable, Weight
 
 _REDIRECTED_WIDTH = 120
 """Width in characters of a table in a file or a pipe."""
@@ -39,7 +39,7 @@ _LONGEST_WORD = 24
 """Width in characters above which a word may be broken."""
 
 
-def print_table(table: Table, stream: TextIO | None = None) -> None:
+def print_table(table: TextTable, stream: TextIO | None = None) -> None:
     """Print a table on standard output or a stream, its control characters made visible."""
     stream = stream or sys.stdout
     console = _console(stream)
@@ -61,7 +61,7 @@ def print_table(table: Table, stream: TextIO | None = None) -> None:
     print(*(line.rstrip(' ') for line in printed.get().split('\n')), sep='\n', file=stream)
 
 
-def print_tables(tables: Iterable[Table]) -> None:
+def print_tables(tables: Iterable[TextTable]) -> None:
     """Print one table after the other."""
     for table in tables:
         print_table(table)
@@ -118,7 +118,7 @@ def _width(text: str) -> int:
     return max(map(cell_len, text.split('\n')))
 
 
-def _marked(table: Table, places: Sequence[int]) -> tuple[list[_Column], dict[str, str]]:
+def _marked(table: TextTable, places: Sequence[int]) -> tuple[list[_Column], dict[str, str]]:
     """Return columns with marks at their dashes and stars, and the reason of each mark."""
     marks: dict[tuple[str, str], str] = {}
     cells: dict[int, list[str]] = {place: [] for place in places}
@@ -136,7 +136,7 @@ def _marked(table: Table, places: Sequence[int]) -> tuple[list[_Column], dict[st
     return columns, {mark: reason for (_, reason), mark in marks.items()}
 
 
-def _column(table: Table, place: int, cells: Sequence[str]) -> _Column:
+def _column(table: TextTable, place: int, cells: Sequence[str]) -> _Column:
     """Return a column; in one of numbers, spaces in place of stars keep the digits in line."""
     weight = table.weights[place] if place < len(table.weights) else Weight.NEEDED
     if place < len(table.numbers):
@@ -221,7 +221,7 @@ def _widths(block: Sequence[_Column], room: int) -> list[int]:
 
 
 def _notes(
-    table: Table, left_out: Sequence[_Column], reasons: dict[str, str], width: int
+    table: TextTable, left_out: Sequence[_Column], reasons: dict[str, str], width: int
 ) -> list[str]:
     """Return the notes below a table, which is `width` characters wide with all columns."""
     notes = [*table.warnings, *(f'{mark}  {reasons[mark]}' for mark in sorted(reasons))]

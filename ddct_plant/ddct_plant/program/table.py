@@ -59,7 +59,7 @@ Row = TypeVar('Row')
 
 
 @dataclass(frozen=True)
-class Column(Generic[Row]):
+class TextColumn(Generic[Row]):
     """Column of a table: its heading, and the value and text of each row."""
 
     heading: str
@@ -100,7 +100,7 @@ class WrittenTable:
 
 
 @dataclass(frozen=True)
-class Table:
+class TextTable:
     """Rows of text, one cell per header, the same for the terminal and a documentation page."""
 
     title: str
@@ -131,14 +131,14 @@ class Table:
 
 def table_of(
     title: str,
-    columns: Sequence[Column[Row]],
+    columns: Sequence[TextColumn[Row]],
     rows: Iterable[Row],
     complete: str = '',
     notes: Sequence[str] = (),
-) -> Table:
+) -> TextTable:
     """Return the table of columns over rows; `complete` names an output with all of it."""
     rows = list(rows)
-    return Table(
+    return TextTable(
         title,
         [column.heading for column in columns],
         [[column.cell(row) for column in columns] for row in rows],
@@ -155,7 +155,7 @@ def table_of(
     )
 
 
-AnyTable = TypeVar('AnyTable', bound=Table)
+AnyTable = TypeVar('AnyTable', bound=TextTable)
 
 
 def with_reasons(table: AnyTable, reason: Callable[[str, Sequence[str]], str]) -> AnyTable:

@@ -8,7 +8,7 @@ import pytest
 
 from ddct_plant.base.errors import DdctError, ParameterError, printable
 from ddct_plant.program.printed_table import print_table
-from ddct_plant.program.table import Table
+from ddct_plant.program.table import TextTable
 
 RED = '\x1b[31mred\x1b[0m'
 
@@ -46,7 +46,7 @@ def test_every_error_for_a_user_is_printable_wherever_it_goes(kind):
 
 
 def test_the_cells_of_a_table_are_printable(capsys):
-    print_table(Table(f'title {RED}', ('name',), [(RED,)]))
+    print_table(TextTable(f'title {RED}', ('name',), [(RED,)]))
     printed = capsys.readouterr().out
     assert '\x1b' not in printed
     assert r'title \x1b[31mred' in printed

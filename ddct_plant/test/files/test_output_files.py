@@ -14,11 +14,11 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import write_json
 from ddct_plant.files.output_file import require_place
 from ddct_plant.program.printed_table import print_table
-from ddct_plant.program.table import Table
+from ddct_plant.program.table import TextTable
 
 
 def test_columns_of_a_plain_table_line_up(capsys):
-    print_table(Table('Title', ('a', 'long header'), [('wide cell', '1'), ('x', '22')]))
+    print_table(TextTable('Title', ('a', 'long header'), [('wide cell', '1'), ('x', '22')]))
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == 'Title'
     cells = ('long header', '1', '22')
@@ -28,7 +28,7 @@ def test_columns_of_a_plain_table_line_up(capsys):
 
 def test_table_on_a_terminal_shows_every_cell_with_its_brackets(capsys, monkeypatch):
     monkeypatch.setattr('sys.stdout.isatty', lambda: True)
-    print_table(Table('Title', ('unit [1]',), [('[bold]',)]))
+    print_table(TextTable('Title', ('unit [1]',), [('[bold]',)]))
     output = capsys.readouterr().out
     assert 'unit [1]' in output and '[bold]' in output
 

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ddct_plant.program.printed_table import print_note, print_table
-from ddct_plant.program.table import Column, Table, Weight, table_of, with_reasons
+from ddct_plant.program.table import TextColumn, TextTable, Weight, table_of, with_reasons
 
 WORDS = st.text('abcdefgh', min_size=1, max_size=40)
 TEXTS = st.lists(WORDS, min_size=1, max_size=6).map(' '.join)
@@ -19,7 +19,7 @@ NUMBERS = st.integers(-(10**9), 10**9).map(str)
 
 
 @st.composite
-def tables(draw: st.DrawFn) -> Table:
+def tables(draw: st.DrawFn) -> TextTable:
     """Return a table whose headings and cells all differ, so that each can be found."""
     count = draw(st.integers(2, 9))
     weights = [Weight.IDENTIFYING, *draw(st.tuples(*[st.sampled_from(Weight)] * (count - 1)))]
@@ -34,14 +34,14 @@ def tables(draw: st.DrawFn) -> Table:
         ]
         for line in range(draw(st.integers(1, 3)))
     ]
-    return Table('', headers, rows, numbers=kinds, weights=weights)
+    return TextTable('', headers, rows, numbers=kinds, weights=weights)
 
 
 def test_nothing_is_printed_where_standard_output_was_closed_before_the_start(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(sys, 'stdout', None)
-    print_table(Table('title', ['a', 'b'], [['1', '2']]))
+    print_table(TextTable('title', ['a', 'b'], [['1', '2']]))
     print_note('a note')
 
 
@@ -50,7 +50,7 @@ class Terminal(io.StringIO):
         return True
 
 
-def table_lines(table: Table, width: int) -> list[tuple[str, bool]]:
+def table_lines(table: TextTable, width: int) -> list[tuple[str, bool]]:
     """Return the lines on a terminal of that width, and whether each is a bold heading."""
     stream = Terminal()
     with pytest.MonkeyPatch.context() as patch:
@@ -63,7 +63,7 @@ def table_lines(table: Table, width: int) -> list[tuple[str, bool]]:
 
 
 @given(tables(), st.integers(40, 200))
-def test_no_line_is_wider_and_each_column_is_shown_or_named(table: Table, width: int) -> None:
+def test_no_line_is_wider_and_each_column_is_shown_or_named(table: TextTable, width: int) -> None:
     lines = table_lines(table, width)
     assert max(len(line) for line, _ in lines) <= width
     text = ' '.join(line for line, _ in lines)
@@ -85,14 +85,14 @@ def test_no_line_is_wider_and_each_column_is_shown_or_named(table: Table, width:
 
 
 @given(tables())
-def test_a_wide_output_shows_every_column_without_a_wrapped_line(table: Table) -> None:
+def test_a_wide_output_shows_every_column_without_a_wrapped_line(table: TextTable) -> None:
     headings = [line for line, is_heading in table_lines(table, 10**4) if is_heading]
     assert len(headings) == 1
     assert headings[0].split() == ' '.join(table.headers).split()
     assert len(table_lines(table, 10**4)) == 1 + len(table.rows)
 
 
-WIDE = Table(
+WIDE = TextTable(
     'Title',
     ('name', 'first', 'second', 'third'),
     [('pi', '1' * 20, '2' * 20, '3' * 20), ('ls8', '4' * 20, '5' * 20, '6' * 20)],
@@ -100,7 +100,7 @@ WIDE = Table(
 )
 
 
-def texts(table: Table, width: int) -> list[str]:
+def texts(table: TextTable, width: int) -> list[str]:
     """Return the lines of a table."""
     return [line for line, _ in table_lines(table, width)]
 
@@ -113,21 +113,21 @@ def test_the_lightest_column_is_left_out_first_and_named_with_the_width_that_sho
 
 
 def test_texts_are_wrapped_only_where_the_output_is_narrower_than_they_are() -> None:
-    table = Table('', ('name', 'why'), [('pi', 'it slips again and again after the lock')])
+    table = TextTable('', ('name', 'why'), [('pi', 'it slips again and again after the lock')])
     widest = len(texts(table, 200)[1])
     assert len(texts(table, widest)) == 2
     assert len(texts(table, widest - 1)) == 3
 
 
 def test_the_note_names_the_file_where_there_is_one() -> None:
-    table = Table(
+    table = TextTable(
         WIDE.title, WIDE.headers, WIDE.rows, weights=WIDE.weights, complete='--json FILE'
     )
     assert texts(table, 60)[-1] == '  not shown: second; all with --json FILE'
 
 
 def test_needed_columns_that_do_not_fit_are_blocks_with_the_name_in_each() -> None:
-    lines = texts(Table('Title', WIDE.headers, WIDE.rows), 60)
+    lines = texts(TextTable('Title', WIDE.headers, WIDE.rows), 60)
     assert lines[1].split() == ['name', 'first', 'second']
     assert lines[4] == ''
     assert lines[5].split() == ['name', 'third']
@@ -135,8 +135,8 @@ def test_needed_columns_that_do_not_fit_are_blocks_with_the_name_in_each() -> No
 
 
 COLUMNS = (
-    Column[tuple[str, float | None, str]]('run', '', lambda row: row[0], number=False),
-    Column[tuple[str, float | None, str]](
+    TextColumn[tuple[str, float | None, str]]('run', '', lambda row: row[0], number=False),
+    TextColumn[tuple[str, float | None, str]](
         'jerk',
         '.1f',
         lambda row: row[1],
@@ -174,11 +174,13 @@ def test_a_footer_has_at_most_six_lines_and_counts_the_rest() -> None:
 
 def test_a_column_that_is_left_out_has_no_reason_below() -> None:
     table = with_reasons(
-        Table('', ('a', 'b'), [('x' * 30, '-')], weights=(Weight.IDENTIFYING, Weight.DETAIL)),
+        TextTable('', ('a', 'b'), [('x' * 30, '-')], weights=(Weight.IDENTIFYING, Weight.DETAIL)),
         lambda header, row: 'none',
     )
     assert texts(table, 80)[-1] == '  -  none'
-    narrow = Table('', ('a', 'b' * 30), table.rows, weights=table.weights, reasons=table.reasons)
+    narrow = TextTable(
+        '', ('a', 'b' * 30), table.rows, weights=table.weights, reasons=table.reasons
+    )
     assert not any('none' in line for line in texts(narrow, 40))
 
 
@@ -188,7 +190,7 @@ def test_a_terminal_gives_the_width_and_a_file_is_at_most_120_wide(
 ) -> None:
     monkeypatch.setenv('COLUMNS', str(width))
     for stream, most in ((Terminal(), width), (io.StringIO(), 120)):
-        print_table(Table('title ' * 40, ('text',), [('word ' * 60,)]), stream)
+        print_table(TextTable('title ' * 40, ('text',), [('word ' * 60,)]), stream)
         print_note('note ' * 60, stream)
         lines = re.sub(r'\x1b\[[0-9;]*m', '', stream.getvalue()).splitlines()
         assert most - 8 <= max(map(len, lines)) <= most

@@ -25,7 +25,7 @@ from ddct_bringup.many_runs.engine import each_result
 from ddct_bringup.scores.shift_conditions import shift_conditions
 from ddct_controllers.registry import Chosen
 from ddct_plant.program.progress import with_progress
-from ddct_plant.program.table import UNDEFINED, Table, Weight, text_or_dash, with_reasons
+from ddct_plant.program.table import UNDEFINED, TextTable, Weight, text_or_dash, with_reasons
 from ddct_plant.scenario.settings import RunSettings
 
 _COMPLETE = '--json FILE'
@@ -61,7 +61,7 @@ class LeastValues:
         return LimitDocument([floor_row(each) for each in self.floors], self.rows, self.capped)
 
     @property
-    def tables(self) -> list[Table]:
+    def tables(self) -> list[TextTable]:
         """Tables for the terminal: the front, and controllers if there are some."""
         front_table = with_reasons(_front_table(self.floors), _no_floor)
         if not self.rows:
@@ -112,8 +112,8 @@ def least_values(
     return LeastValues(settings, floors, rows, capped)
 
 
-def _front_table(floors: Sequence[Floor]) -> Table:
-    return Table(
+def _front_table(floors: Sequence[Floor]) -> TextTable:
+    return TextTable(
         'least value of each metric by lock time, and what a run attains',
         ('lock s', 'metric', 'unit', 'least', 'attained', 'gap %', 'proof'),
         [
@@ -136,8 +136,8 @@ def _front_table(floors: Sequence[Floor]) -> Table:
     )
 
 
-def _controllers_table(rows: Sequence[ControllerRow]) -> Table:
-    return Table(
+def _controllers_table(rows: Sequence[ControllerRow]) -> TextTable:
+    return TextTable(
         'controllers, over the least at their own lock time',
         ('controller', 'lock s', 'metric', 'value', 'least', 'over least'),
         [

@@ -26,7 +26,7 @@ from ddct_bringup.evaluation.spread import QuantitySummary
 from ddct_bringup.evaluation.summarise import summarise
 from ddct_bringup.evaluation.summary import GroupSummary, Summary
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_plant.program.table import UNDEFINED, Table, Weight, with_reasons
+from ddct_plant.program.table import UNDEFINED, TextTable, Weight, with_reasons
 
 _STATES = 'controller', 'engaged', 'other states'
 _HEADINGS = ('response s', 'jerk m/s^3', 'work kJ', 'A_w m/s^2', 'releases')
@@ -37,7 +37,7 @@ _FORMS = tuple(
 """Key, format and factor of each column."""
 
 
-def packaged_tables() -> Mapping[str, Table]:
+def packaged_tables() -> Mapping[str, TextTable]:
     """
     Return the tables of all cases and of each scenario by name, a row for each controller.
 
@@ -48,19 +48,19 @@ def packaged_tables() -> Mapping[str, Table]:
     varied = tuple(Cases.packaged().whole.vary)
     every = summarise(rows.table, rows.by(varied, dominance=True))
     tables = {
-        'all': Table('All development cases', _headers_of_all(), list(_overall(every))),
+        'all': TextTable('All development cases', _headers_of_all(), list(_overall(every))),
         'dominance': _dominance(every),
     }
     names = np.array(rows.rows[SCENARIO].to_pylist()[: rows.cases])
     for name in dict.fromkeys(names.tolist()):
         of_scenario = rows.of_cases(np.flatnonzero(names == name))
         part = summarise(of_scenario.table, of_scenario.by(varied))
-        tables[name] = Table(
+        tables[name] = TextTable(
             f'Development cases of {name}',
             _STATES,
             [(each.controller, *_state_cells(each)) for each in part.groups],
         )
-        tables[f'{name}_figures'] = Table(
+        tables[f'{name}_figures'] = TextTable(
             f'Successes in development cases of {name}',
             ('controller', 'of', *_HEADINGS),
             list(_figure_rows(part)),
@@ -70,7 +70,7 @@ def packaged_tables() -> Mapping[str, Table]:
     return {name: _complete(table) for name, table in tables.items()}
 
 
-def _complete(table: Table) -> Table:
+def _complete(table: TextTable) -> TextTable:
     """Return a table with the reasons of its dashes, and the option that writes all of it."""
     return replace(with_reasons(table, _dash_reason), complete='--json FILE')
 
@@ -133,7 +133,7 @@ def _spread_texts(
     return p50, p95, worst
 
 
-def _dominance(summary: Summary) -> Table:
+def _dominance(summary: Summary) -> TextTable:
     """Return how many controllers each one dominates, and which dominate it."""
     dominators = {group.controller: group.dominated_by or () for group in summary.groups}
     found = []
@@ -141,7 +141,7 @@ def _dominance(summary: Summary) -> Table:
         dominated = sum(name in others for others in dominators.values())
         found.append((name, str(dominated), str(len(ours)), ', '.join(ours[:3]) or '-'))
     headers = 'controller', 'dominates', 'dominated by', 'the first of these'
-    return Table('Who dominates whom in all development cases', headers, found)
+    return TextTable('Who dominates whom in all development cases', headers, found)
 
 
 def _compared_cases(rows: CaseRows) -> str:

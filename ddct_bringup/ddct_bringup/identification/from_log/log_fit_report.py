@@ -17,7 +17,7 @@ from ddct_bringup.logs.wheel_radius import MeasuredRadius
 from ddct_plant.models.body import RADIUS
 from ddct_plant.models.parameters import SYMBOLS_AND_UNITS
 from ddct_plant.program.printed_table import print_note, print_table
-from ddct_plant.program.table import Table, Weight, text_or_dash, with_reasons
+from ddct_plant.program.table import TextTable, Weight, text_or_dash, with_reasons
 
 
 @dataclass(frozen=True)
@@ -187,7 +187,7 @@ def print_fit(report: LogFitReport) -> None:
             print_note(f'- {reason}')
     begin, end = _span(report.fitted)
     _print_table(
-        Table(
+        TextTable(
             f'Driveline from {report.fitted.path}, {begin:g} to {end:g} s; intervals of 95 %',
             ('parameter', 'symbol', 'value', 'lowest', 'highest', 'unit', 'state', 'new car'),
             [
@@ -208,7 +208,7 @@ def print_fit(report: LogFitReport) -> None:
         )
     )
     _print_table(
-        Table(
+        TextTable(
             'How late the log has each signal, against the engine speed',
             ('signal', 'delay ms', 'lowest', 'highest', 'state'),
             [
@@ -226,7 +226,7 @@ def print_fit(report: LogFitReport) -> None:
     )
     begin, end = _span(report.held_out)
     _print_table(
-        Table(
+        TextTable(
             f'Prediction of {report.held_out.path}, {begin:g} to {end:g} s',
             ('signal', 'RMS rad/s', 'NRMSE'),
             [
@@ -250,7 +250,7 @@ def print_fit(report: LogFitReport) -> None:
         print_note(f'Note: {note}.')
 
 
-def _print_table(table: Table) -> None:
+def _print_table(table: TextTable) -> None:
     print_table(replace(with_reasons(table, _dash_reason), complete='--json FILE'))
 
 

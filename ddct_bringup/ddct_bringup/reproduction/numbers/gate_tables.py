@@ -9,12 +9,12 @@ from operator import attrgetter
 from ddct_bringup.reproduction.numbers.gate import OUTCOMES, GateRow
 from ddct_bringup.reproduction.numbers.thesis_number import ERRATUM, Finding, is_number
 from ddct_plant.models.printed import PrintedNumber
-from ddct_plant.program.table import Column, Table, Weight, table_of
+from ddct_plant.program.table import TextColumn, TextTable, Weight, table_of
 
 _CHAPTERS = ('1', '2', '3', '4', '5', '6')
 
 
-def page_tables(rows: Sequence[GateRow]) -> dict[str, Table]:
+def page_tables(rows: Sequence[GateRow]) -> dict[str, TextTable]:
     """Return every table of the documentation page by name."""
     errata = [row for row in rows if row.number.verdict == ERRATUM]
     return {
@@ -25,7 +25,7 @@ def page_tables(rows: Sequence[GateRow]) -> dict[str, Table]:
     }
 
 
-def summary_table(rows: Sequence[GateRow]) -> Table:
+def summary_table(rows: Sequence[GateRow]) -> TextTable:
     """Return how many numbers of each chapter have each verdict."""
     counts = Counter((_chapter(row), row.outcome) for row in rows)
     counts.update(('all', row.outcome) for row in rows)
@@ -34,16 +34,16 @@ def summary_table(rows: Sequence[GateRow]) -> Table:
         (outcome, *(str(counts[chapter, outcome]) for chapter in chapters)) for outcome in OUTCOMES
     ]
     headers = ('verdict', *(f'chapter {chapter}' for chapter in _CHAPTERS), 'all')
-    return Table('Printed numbers by verdict', headers, lines)
+    return TextTable('Printed numbers by verdict', headers, lines)
 
 
-def facts_table(rows: Sequence[GateRow]) -> Table:
+def facts_table(rows: Sequence[GateRow]) -> TextTable:
     """Return the number of distinct facts by outcome."""
     numbers, facts = Counter(row.outcome for row in rows), count_facts(rows)
     lines = [(outcome, str(numbers[outcome]), str(facts[outcome])) for outcome in OUTCOMES]
     total = ('all', str(len(rows)), str(facts.total()))
     headers = ('verdict', 'entries', 'distinct facts')
-    return Table('Entries and distinct facts', headers, [*lines, total])
+    return TextTable('Entries and distinct facts', headers, [*lines, total])
 
 
 def count_facts(rows: Sequence[GateRow]) -> Counter[str]:
@@ -57,7 +57,7 @@ def count_facts(rows: Sequence[GateRow]) -> Counter[str]:
     )
 
 
-def chapter_tables(rows: Sequence[GateRow], *, reasons: bool) -> dict[str, Table]:
+def chapter_tables(rows: Sequence[GateRow], *, reasons: bool) -> dict[str, TextTable]:
     """Return one table per chapter by the name `chapter_N`; `reasons` adds groups and reasons."""
     return {
         f'chapter_{chapter}': table_of(
@@ -103,13 +103,13 @@ def _no_tolerance(row: GateRow) -> str:
     return 'a statement, which holds or does not'
 
 
-_GateColumn = Column[GateRow]
+_GateColumn = TextColumn[GateRow]
 
 
 def _text(
     heading: str, value: Callable[[GateRow], str | None], weight: Weight = Weight.NEEDED
 ) -> _GateColumn:
-    return Column(heading, '', value, number=False, undefined=_not_computed, weight=weight)
+    return TextColumn(heading, '', value, number=False, undefined=_not_computed, weight=weight)
 
 
 _COMPLETE = '--json FILE'
@@ -124,7 +124,7 @@ _COLUMNS = (
     *_VALUE_COLUMNS[:2],
     _text('verdict', attrgetter('outcome')),
     *_VALUE_COLUMNS[2:],
-    Column(
+    TextColumn(
         'tolerance',
         '.3g',
         attrgetter('number.absolute_tolerance'),
@@ -132,7 +132,7 @@ _COLUMNS = (
         weight=Weight.DETAIL,
     ),
 )
-_GROUP: _GateColumn = Column(
+_GROUP: _GateColumn = TextColumn(
     'group',
     '',
     lambda row: row.number.group or None,

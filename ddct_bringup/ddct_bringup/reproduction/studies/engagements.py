@@ -26,7 +26,7 @@ from ddct_bringup.verdict.state import ENGAGED
 from ddct_controllers.design.drawing.line_styles import BLACK, BLUE, GREY, VERMILLION
 from ddct_controllers.registry import own_controller_names
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
-from ddct_plant.program.table import Column
+from ddct_plant.program.table import TextColumn
 from ddct_plant.scenario.choices.scenarios import scenario_names
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
@@ -67,11 +67,11 @@ def _together(run: StudyRun) -> float | None:
 
 
 COLUMNS: tuple[StudyColumn, ...] = (
-    Column('state', '', lambda run: run.scores.state),
-    Column('lock s', '.2f', _together),
-    Column('friction kJ', '.1f', friction_kj),
-    Column('releases', '.0f', lambda run: run.scores.metrics['releases']),
-    Column('peak jerk m/s^3', '.1f', lambda run: run.scores.metrics['peak_jerk_m_s3']),
+    TextColumn('state', '', lambda run: run.scores.state),
+    TextColumn('lock s', '.2f', _together),
+    TextColumn('friction kJ', '.1f', friction_kj),
+    TextColumn('releases', '.0f', lambda run: run.scores.metrics['releases']),
+    TextColumn('peak jerk m/s^3', '.1f', lambda run: run.scores.metrics['peak_jerk_m_s3']),
 )
 
 

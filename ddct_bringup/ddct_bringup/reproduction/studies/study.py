@@ -15,7 +15,7 @@ from ddct_bringup.thesis.table_5_1 import FORMS
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.files.json_records import Inline
-from ddct_plant.program.table import Column, Quantity, Table, Weight, WrittenTable
+from ddct_plant.program.table import Quantity, TextColumn, TextTable, Weight, WrittenTable
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -42,7 +42,7 @@ class WrittenStudy:
 
 
 @dataclass(frozen=True)
-class Study(Table):
+class Study(TextTable):
     """Table with remarks for its readers."""
 
     remarks: tuple[str, ...] = ()
@@ -56,7 +56,7 @@ class Study(Table):
 
 
 StudyFunction = Callable[[], Study]
-StudyColumn = Column[StudyRun]
+StudyColumn = TextColumn[StudyRun]
 
 
 def headers(columns: Sequence[StudyColumn]) -> tuple[str, ...]:
@@ -120,14 +120,14 @@ def metric_column(
     quantity: Quantity, form: str, heading: str = '', weight: Weight = Weight.NEEDED
 ) -> StudyColumn:
     """Return the column of a metric; the heading defaults to its symbol and unit."""
-    return Column(
+    return TextColumn(
         heading or quantity.heading, form, lambda run: run.metrics[quantity.key], weight=weight
     )
 
 
 def close_column(header: str) -> StudyColumn:
     """Return the column of `close_time_s`."""
-    return Column(
+    return TextColumn(
         header,
         '.2f',
         lambda run: close_time_s(run.trajectory, run.start),
@@ -142,7 +142,7 @@ TWO_INPUTS: tuple[StudyColumn, ...] = (
     close_column(f'|w_d| < {CLOSE_RPM:g} rpm s'),
     *TABLE_5_1[1:],
     metric_column(METRICS['slip_final_rpm'], '.1f', 'w_d at end rpm'),
-    Column(
+    TextColumn(
         'C_m - demand N m',
         '',
         lambda run: deviation_range(run.trajectory),

@@ -30,7 +30,7 @@ from ddct_controllers.mpc.costs import BASIS, default_torsion_weight
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
 from ddct_controllers.state_of_art.pedal_mpc import engagement_time_s
 from ddct_plant.models.engine import EngineAuthority
-from ddct_plant.program.table import Column, Weight
+from ddct_plant.program.table import TextColumn, Weight
 from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 TORSION_FACTORS = (0.0, 1.0, 3.0, 6.0, 12.0, 20.0, 40.0)
@@ -101,8 +101,8 @@ def state_of_art() -> Study:
         (
             *TABLE_5_1,
             _SETTLED,
-            Column('w_d at the end rpm', 'z.2f', lambda run: run.slip_rpm[-1]),
-            Column('largest C_m less demand N m', '.0f', _largest_deviation),
+            TextColumn('w_d at the end rpm', 'z.2f', lambda run: run.slip_rpm[-1]),
+            TextColumn('largest C_m less demand N m', '.0f', _largest_deviation),
         ),
         [
             ((name, f'{gain:g}'), thesis_run(name, 'detailed', gain))
@@ -158,7 +158,7 @@ def engine_authority() -> Study:
         (
             *TWO_INPUTS,
             metric_column(METRICS['peak_jerk_m_s3'], '.1f', weight=Weight.USEFUL),
-            Column('friction kJ', '.2f', friction_kj, weight=Weight.USEFUL),
+            TextColumn('friction kJ', '.2f', friction_kj, weight=Weight.USEFUL),
         ),
         [((name, case), study_run(settings[case], name)) for name, case in cases],
     )

@@ -18,7 +18,7 @@ from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.timebase import PERIOD_S, steps_in
 from ddct_plant.base.units import rpm_from_rad_s
-from ddct_plant.program.table import Column
+from ddct_plant.program.table import TextColumn
 from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 CONTROLLERS = (
@@ -60,11 +60,11 @@ def _study(architecture: str, wear_gains: tuple[float, ...], remark: str) -> Stu
         f'Worn clutch and unknown load in the thesis scenario, {architecture}',
         ('controller', 'K_usura'),
         (
-            Column('w_d at 0.6 s rpm', '.0f', lambda run: run.slip_rpm[run.start]),
+            TextColumn('w_d at 0.6 s rpm', '.0f', lambda run: run.slip_rpm[run.start]),
             *TABLE_5_1,
-            Column('w_d at the end rpm', 'z.2f', lambda run: run.slip_rpm[-1]),
-            Column('largest in last 0.5 s', '.2f', _largest_in_last_part),
-            Column('after load step', 'z.2f', _after_load_step),
+            TextColumn('w_d at the end rpm', 'z.2f', lambda run: run.slip_rpm[-1]),
+            TextColumn('largest in last 0.5 s', '.2f', _largest_in_last_part),
+            TextColumn('after load step', 'z.2f', _after_load_step),
         ),
         [
             ((name, f'{gain:g}'), thesis_run(name, architecture, gain))

@@ -16,7 +16,7 @@ from ddct_controllers.design.h_infinity.record_types import (
 )
 from ddct_controllers.design.state_space import factors_text
 from ddct_plant.files.json_records import to_json
-from ddct_plant.program.table import Table, Weight, text_or_dash, with_reasons
+from ddct_plant.program.table import TextTable, Weight, text_or_dash, with_reasons
 
 _LOOP_QUANTITIES = [
     DESIGN_QUANTITY_OF[name]
@@ -44,14 +44,14 @@ _WEIGHTS = (
 
 def design_tables(
     records: Sequence[HinfRecord], uncertainty: UncertaintyRecord
-) -> dict[str, Table]:
+) -> dict[str, TextTable]:
     """Return the tables of designs for one specification, by their names on the page."""
     tables = {
         'specifications': _specification_table(records[0].provenance.specifications),
         'weights': _weight_table(records),
         'uncertainty': _uncertainty_table(uncertainty),
         'synthesis': _synthesis_table(records),
-        'cleaning': Table(
+        'cleaning': TextTable(
             'Cleaning, in the order of the rules',
             ('controller', 'rule', 'taken out'),
             [
@@ -76,9 +76,9 @@ def _dash_reason(header: str, row: Sequence[str]) -> str:
     return 'the loop is unstable at a corner'
 
 
-def loop_table(loops: Mapping[str, LoopsEntry]) -> Table:
+def loop_table(loops: Mapping[str, LoopsEntry]) -> TextTable:
     """Return norms, step response and margins of the loops of named controllers."""
-    return Table(
+    return TextTable(
         'Loops: norms by the weights, step response and whether it meets both, margins',
         _LOOP_HEADERS,
         [
@@ -98,8 +98,8 @@ def loop_table(loops: Mapping[str, LoopsEntry]) -> Table:
     )
 
 
-def _specification_table(specified: HinfSpecifications) -> Table:
-    return Table(
+def _specification_table(specified: HinfSpecifications) -> TextTable:
+    return TextTable(
         'Specifications, translated by the second-order prototype',
         ('t_r s', 's^ %', 'zeta', 'S_p', 'T_p', 'w_n rad/s'),
         [
@@ -115,8 +115,8 @@ def _specification_table(specified: HinfSpecifications) -> Table:
     )
 
 
-def _weight_table(records: Sequence[HinfRecord]) -> Table:
-    return Table(
+def _weight_table(records: Sequence[HinfRecord]) -> TextTable:
+    return TextTable(
         'Weights',
         ('controller', 'recipe', *(heading for heading, _, _ in _WEIGHTS), 'hold, delay in plant'),
         [
@@ -135,10 +135,10 @@ def _weight_cells(weights: WeightEntry) -> list[str]:
     return [text_or_dash(getattr(weights, key), form) for _, key, form in _WEIGHTS]
 
 
-def _uncertainty_table(found: UncertaintyRecord) -> Table:
+def _uncertainty_table(found: UncertaintyRecord) -> TextTable:
     above = found.printed_falls_short_above_rad_s
     short = f'by {100.0 * found.printed_falls_short_by:.2f} % above {above:.3g} rad/s'
-    return Table(
+    return TextTable(
         f'W_u; the relative error of K_usura is {found.largest_error:.3f} at most',
         ('W_u', 'gain', 'zero rad/s', 'pole rad/s', 'falls short'),
         [
@@ -154,8 +154,8 @@ def _uncertainty_table(found: UncertaintyRecord) -> Table:
     )
 
 
-def _synthesis_table(records: Sequence[HinfRecord]) -> Table:
-    return Table(
+def _synthesis_table(records: Sequence[HinfRecord]) -> TextTable:
+    return TextTable(
         'Synthesis: norms of the closed loop with the weights',
         ('controller', 'method', 'optimum', 'lower bound', 'taken'),
         [
@@ -171,8 +171,8 @@ def _synthesis_table(records: Sequence[HinfRecord]) -> Table:
     )
 
 
-def _controller_table(records: Sequence[HinfRecord]) -> Table:
-    return Table(
+def _controller_table(records: Sequence[HinfRecord]) -> TextTable:
+    return TextTable(
         'Controllers in N m/rpm; the sampled design is discretised by the bilinear transform',
         ('controller', 'form', 'gain', 'numerator', 'denominator'),
         [
@@ -193,8 +193,8 @@ def _controller_table(records: Sequence[HinfRecord]) -> Table:
     )
 
 
-def _corner_table(records: Sequence[HinfRecord]) -> Table:
-    return Table(
+def _corner_table(records: Sequence[HinfRecord]) -> TextTable:
+    return TextTable(
         'Worst of wear 0.7 to 1.3 and all driveline parameters +-20 %, sampled loop',
         ('controller', 'corners', 'unstable', 'M_s', 'K_usura', 'at'),
         [

@@ -17,7 +17,7 @@ from ddct_controllers.design.loop_shaping.specifications import (
 )
 from ddct_controllers.design.loop_shaping.verification import Contour
 from ddct_plant.files.json_records import to_json
-from ddct_plant.program.table import Table, Weight, text_or_dash, with_reasons
+from ddct_plant.program.table import TextTable, Weight, text_or_dash, with_reasons
 
 _LOOP_QUANTITIES = [
     DESIGN_QUANTITY_OF[name]
@@ -38,17 +38,17 @@ _TRANSLATED = (
 )
 
 
-def thesis_tables(record: ThesisRecord) -> dict[str, Table]:
+def thesis_tables(record: ThesisRecord) -> dict[str, TextTable]:
     """Return the tables of `thesis_record` by their names in docs/controllers/loop_shaping.md."""
     tables = {
         'specifications': _specification_table(),
-        'network_steps': Table(
+        'network_steps': TextTable(
             'From K_c/s to G_c1, continuous and without delay',
             ('controller', *_LOOP_HEADERS),
             [(row.step, *_loop_cells(row.found)) for row in record.network_steps],
         ),
         'placement': _placement_table(record.placement),
-        'loops': Table(
+        'loops': TextTable(
             'Both controllers, and the curves of 14 % overshoot',
             ('controller', 'loop', *_LOOP_HEADERS),
             [(row.controller, row.loop, *_loop_cells(row.found)) for row in record.loops],
@@ -66,14 +66,14 @@ def _no_loop_value(header: str, row: Sequence[str]) -> str:
     )
 
 
-def design_tables(record: LoopShapingRecord) -> tuple[Table, Table]:
+def design_tables(record: LoopShapingRecord) -> tuple[TextTable, TextTable]:
     """Return the tables of `design_record`: specified and reached quantities, and G_c(s)."""
     provenance = record.provenance
     specified, found = provenance.specifications, provenance.sampled_loop
     margins = found.margins
     overshoot = None if found.overshoot is None else 100.0 * found.overshoot
     peaks = {contour.name: contour for contour in record.contours}
-    quantities = Table(
+    quantities = TextTable(
         f'{record.name}: {provenance.structure}, {provenance.integrators} integrator(s)',
         ('quantity', 'specified', 'sampled loop', 'unit'),
         [
@@ -88,7 +88,7 @@ def design_tables(record: LoopShapingRecord) -> tuple[Table, Table]:
         ],
     )
     controller = record.controller
-    parts = Table(
+    parts = TextTable(
         'G_c(s) in N m/rpm; a is (s + a), (b, c) is (s^2 + b s + c)',
         ('part', 'value'),
         [
@@ -107,8 +107,8 @@ def _no_quantity(header: str, row: Sequence[str]) -> str:
     return 'the loop is unstable, or nothing of this kind makes it so'
 
 
-def _specification_table() -> Table:
-    return Table(
+def _specification_table() -> TextTable:
+    return TextTable(
         'Specifications translated by the second-order prototype',
         ('section', 't_r s', 's^ %', 'zeta', 'S_p', 'T_p', 't_r w_c', 'w_c rad/s', 'w_n rad/s'),
         [
@@ -128,7 +128,7 @@ def _specification_table() -> Table:
     )
 
 
-def _placement_table(placements: Sequence[PlacementEntry]) -> Table:
+def _placement_table(placements: Sequence[PlacementEntry]) -> TextTable:
     lines = {
         'gain N m/rpm': [f'{one.controller.gain:.6f}' for one in placements],
         'zero rad/s': [f'{one.controller.numerator[0]:.4f}' for one in placements],
@@ -139,7 +139,7 @@ def _placement_table(placements: Sequence[PlacementEntry]) -> Table:
         's^ %': [f'{100.0 * one.overshoot:.1f}' for one in placements],
         'M_t': [f'{one.complementary_peak:.3f}' for one in placements],
     }
-    return Table(
+    return TextTable(
         'G_c2 as printed, and as the rule gives it',
         ('quantity', *(one.version for one in placements)),
         [(name, *cells) for name, cells in lines.items()],
