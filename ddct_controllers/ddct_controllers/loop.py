@@ -13,7 +13,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from ddct_controllers.architecture import AskedRequest, make_architecture
+from ddct_controllers.architecture import AskedRequest, TorqueRequest, make_architecture
 from ddct_controllers.handover.interface import HandoverCommand, HandoverMeasurement
 from ddct_controllers.handover.laws import make_handover
 from ddct_controllers.interface import Controller, Measurement
@@ -58,8 +58,6 @@ class AskedStep(NamedTuple):
     """Measured signals and the slip reference."""
     asked: AskedRequest
     """Request of the architecture without the feedback."""
-    time_us: float
-    """Wall time that the architecture has taken, us."""
 
 
 class PlantLoop(ABC):
@@ -155,10 +153,23 @@ class ClosedLoop(PlantLoop):
 
     def request(self, observed: ObservedStep) -> Request:
         """Return what the architecture requests at a step."""
-        return self.requested(self.ask(observed))
+        measurement = self._measurement(observed)
+        started = time.perf_counter()
+        request = self.architecture.update(measurement, observed.on_coming)
+        self.update_time_us = 1e6 * (time.perf_counter() - started)
+        return _with_signals(request, measurement)
 
     def ask(self, observed: ObservedStep) -> AskedStep:
-        """Return what the controller is asked at a step; advance reference and open loop."""
+        """Return what the controller is asked at a step; `requested` takes its answer."""
+        measurement = self._measurement(observed)
+        return AskedStep(measurement, self.architecture.ask(measurement, observed.on_coming))
+
+    def requested(self, step: AskedStep) -> Request:
+        """Return what `request` does, for a step of which the controller has been asked."""
+        return _with_signals(self.architecture.answered(step.asked), step.measurement)
+
+    def _measurement(self, observed: ObservedStep) -> Measurement:
+        """Change the gains of a step, and return what is measured, with the slip reference."""
         observation, on_coming = observed.observation, observed.on_coming
         step, measured = observation.tick.step, observation.tick.measured
         if step in self._changes:
@@ -166,20 +177,14 @@ class ClosedLoop(PlantLoop):
         speeds, rates = self._reference.update(
             step, measured.slip_speed, measured.shaft_speed, on_coming.share
         )
-        measurement = Measurement.of_plant(observation, speeds, rates)
-        started = time.perf_counter()
-        asked = self.architecture.ask(measurement, on_coming)
-        return AskedStep(measurement, asked, 1e6 * (time.perf_counter() - started))
+        return Measurement.of_plant(observation, speeds, rates)
 
-    def requested(self, step: AskedStep) -> Request:
-        """Return what the architecture requests, with the controller's answer."""
-        started = time.perf_counter()
-        request = self.architecture.answered(step.asked)
-        self.update_time_us = step.time_us + 1e6 * (time.perf_counter() - started)
-        signals: dict[str, SignalValue] = {
-            'slip_reference': step.measurement.slip_reference,
-            'slip_reference_rate': step.measurement.slip_reference_rate,
-            'status': request.status,
-            **request.parts,
-        }
-        return Request(request.torque, request.engine_torque, signals)
+
+def _with_signals(request: TorqueRequest, measurement: Measurement) -> Request:
+    signals: dict[str, SignalValue] = {
+        'slip_reference': measurement.slip_reference,
+        'slip_reference_rate': measurement.slip_reference_rate,
+        'status': request.status,
+        **request.parts,
+    }
+    return Request(request.torque, request.engine_torque, signals)

@@ -97,8 +97,7 @@ class MdfSource(LogSource):
             if not path.is_file():
                 raise DdctError('no such file', place=path)
         try:
-            # An open file: where it is damaged, MDF of a path writes a traceback when it is freed.
-            with self.path.open('rb') as data, MDF(data) as file:
+            with MDF(self.path) as file:
                 if self._bus is None:
                     yield file
                 else:
