@@ -81,7 +81,13 @@ def _console(stream: TextIO | None) -> Console:
     """
     is_terminal = stream is not None and stream.isatty()
     width = None if is_terminal else _REDIRECTED_WIDTH
-    console = Console(file=stream, force_terminal=is_terminal, width=width, highlight=False)
+    console = Console(
+        file=stream,
+        force_terminal=is_terminal,
+        force_jupyter=False,  # in a notebook too it is text
+        width=width,
+        highlight=False,
+    )
     console.width = max(console.width, _LEAST_WIDTH)
     return console
 
