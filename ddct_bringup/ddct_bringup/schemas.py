@@ -33,6 +33,8 @@ from ddct_bringup.tuning.result import SCHEMA_VERSION as FRONT_VERSION
 from ddct_bringup.tuning.result import TuningResult
 from ddct_bringup.verification.document import FolderDocument, FoldersDocument
 from ddct_controllers.check.program import CheckReport
+from ddct_controllers.design.h_infinity.record_types import HinfResult
+from ddct_controllers.design.loop_shaping.record_types import LoopShapingRecord, ThesisRecord
 from ddct_controllers.workflows.evidence_types import FrequencyEvidence
 from ddct_controllers.workflows.plant_on_paper import PlantOnPaper
 from ddct_plant.files.json_records import write_json
@@ -101,6 +103,9 @@ DOCUMENTS: Mapping[str, JsonDocument] = {
         '--json of benchmark --packaged', Mapping[str, WrittenTable]
     ),
     'plant': JsonDocument('--json of design plant', PlantOnPaper),
+    'loop_shaping': JsonDocument('--json of design loop-shaping --rise-time', LoopShapingRecord),
+    'loop_shaping_thesis': JsonDocument('--json of design loop-shaping', ThesisRecord),
+    'h_infinity': JsonDocument('--json of design h-infinity', HinfResult),
 }
 """Documents by the name of their schema."""
 
