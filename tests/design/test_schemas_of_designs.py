@@ -6,6 +6,7 @@ import json
 
 import pytest
 from by_schema import require_schema
+
 from ddct_controllers.workflows.design_program import main
 
 
