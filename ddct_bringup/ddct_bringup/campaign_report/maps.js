@@ -180,6 +180,10 @@ addEventListener('drawn', ({detail: views}) => {
     select.disabled = false;
     select.addEventListener('change', show);
   });
-  addEventListener('resize', show);
+  // To print changes the size of the window; the charts on paper are those of the screen.
+  let printing = false;
+  addEventListener('beforeprint', () => { printing = true; });
+  addEventListener('afterprint', () => { printing = false; });
+  addEventListener('resize', () => { if (!printing) show(); });
   show();
 });

@@ -47,7 +47,7 @@ const colours = (() => {
     return typeof a === 'number' ? a - b : a.localeCompare(b, 'en', {numeric: true});
   }
 
-  document.querySelectorAll('.sort').forEach((button) => button.addEventListener('click', () => {
+  function sort(button) {
     const heading = button.closest('th');
     const body = heading.closest('table').tBodies[0];
     const column = Number(heading.dataset.column ?? [...heading.parentElement.children].indexOf(heading));
@@ -56,7 +56,17 @@ const colours = (() => {
     heading.setAttribute('aria-sort', descending ? 'descending' : 'ascending');
     const rows = [...body.rows].sort((a, b) => compare(sortKey(a, column), sortKey(b, column)));
     body.append(...(descending ? rows.reverse() : rows));
-  }));
+  }
+
+  // Browsers leave buttons out of the headings that they repeat on paper, so some are plain elements.
+  document.querySelectorAll('.sort').forEach((button) => {
+    button.addEventListener('click', () => sort(button));
+    if (button.tagName !== 'BUTTON') button.addEventListener('keydown', (event) => {
+      if (event.key !== 'Enter' && event.key !== ' ') return;
+      event.preventDefault();
+      sort(button);
+    });
+  });
 })();
 
 document.querySelectorAll('.scroll').forEach((frame) => {
