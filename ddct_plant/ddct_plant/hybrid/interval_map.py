@@ -161,9 +161,9 @@ class IntervalMap:
         those in the v, (R, c).
         """
         least = np.full((len(values), len(self._signs)), np.inf)
-        checks = np.split(values[:, self._results :], len(self._guarded), axis=1)
-        for element, of_guard in zip(self._guarded, checks, strict=True):
-            np.minimum(least[:, element], of_guard.min(axis=1), out=least[:, element])
+        checks = values[:, self._results :].reshape(len(values), len(self._guarded), -1)
+        for element, of_guard in zip(self._guarded, checks.min(axis=2).T, strict=True):
+            np.minimum(least[:, element], of_guard, out=least[:, element])
         work = np.zeros_like(least)
         for element, integrals, where in self._work:
             work[:, element] = (values[:, integrals] * capacities[:, where]).sum(axis=1)

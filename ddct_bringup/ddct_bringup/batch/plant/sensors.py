@@ -3,7 +3,7 @@
 """Sensors of many runs."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from typing import Any, NamedTuple
 
@@ -42,55 +42,57 @@ class StackedSensors:
 
     def __init__(self, runs: Sequence[RunSettings], steps: int) -> None:
         """Make the sensors for steps 0 to N; their random numbers follow from the seeds."""
-        seeds = [run.case.seed for run in runs]
-        options: dict[str, list[Any]] = {
-            name: [getattr(run.scenario.sensors, name) for run in runs] for name in _QUANTITIES
-        }
-        self._sensors = {name: _Sensor(each, name, seeds, steps) for name, each in options.items()}
-        self._teeth = {name: _Teeth(options[name]) for name in _JOINTS}
+        self._speeds = _Sensors(runs, _SPEEDS, steps)
+        self._torques = _Sensors(runs, ('engine_torque',), steps)
+        self._teeth = _Teeth(_options(runs, _JOINTS))
+        self._runs = len(runs)
 
     def speeds(self, step: int, true: DrivelineOutputs) -> SensedSpeeds:
         """Return the measured speeds at step k; steps follow one another."""
-        angles, speeds = true.joint_position, true.joint_speed
-        sensed: dict[str, np.ndarray] = {}
-        for name, joint in _JOINTS.items():
-            angle: Any = getattr(angles, joint)
-            speed: Any = getattr(speeds, joint)
-            speed = self._teeth[name].take(step, angle, speed)
-            sensed[name] = self._sensors[name].take(step, speed)
+        angles, speeds = (
+            np.concatenate([getattr(each, joint) for joint in _JOINTS.values()])
+            for each in (true.joint_position, true.joint_speed)
+        )
+        counted = self._teeth.take(step, angles, speeds)
         vehicle: Any = true.vehicle_speed
-        vehicle = self._sensors['vehicle_speed'].take(step, vehicle)
-        return SensedSpeeds(**sensed, vehicle_speed=vehicle)
+        taken = self._speeds.take(step, np.concatenate([counted, vehicle]))
+        return SensedSpeeds(*taken.reshape(len(_SPEEDS), self._runs))
 
     def torque(self, step: int, engine_torque: np.ndarray) -> np.ndarray:
         """Return the estimates of C_m in N m over the coming period, (R,)."""
-        return self._sensors['engine_torque'].take(step, engine_torque)
+        return self._torques.take(step, engine_torque)
 
     @property
     def unsure(self) -> np.ndarray:
         """Runs with a reading that rounding may have changed by a whole step, (R,)."""
-        parts: list[_Sensor | _Teeth] = [*self._sensors.values(), *self._teeth.values()]
-        unsure: np.ndarray = np.any([part.unsure for part in parts], axis=0)
+        parts = (self._speeds.unsure, self._torques.unsure, self._teeth.unsure)
+        of_runs = np.concatenate(parts).reshape(-1, self._runs)
+        unsure: np.ndarray = np.any(of_runs, axis=0)
         return unsure
 
 
 _JOINTS = {'engine_speed': 'engine', 'shaft_speed': 'primary_shaft', 'wheel_speed': 'wheel'}
 """Joint of each sensor of a shaft's speed."""
-_QUANTITIES = (*_JOINTS, 'vehicle_speed', 'engine_torque')
+_SPEEDS = (*_JOINTS, 'vehicle_speed')
 
 
-class _Sensor:
-    """Sensors of one quantity of R runs, the counterpart of `Sensor`."""
+def _options(runs: Sequence[RunSettings], quantities: Iterable[str]) -> list[Any]:
+    """Return the options of the sensors of all runs, quantity by quantity."""
+    return [getattr(run.scenario.sensors, name) for name in quantities for run in runs]
 
-    def __init__(
-        self, options: Sequence[SensorOptions], quantity: str, seeds: Sequence[int], steps: int
-    ) -> None:
+
+class _Sensors:
+    """Sensors of Q quantities of R runs, quantity by quantity, the counterpart of `Sensor`."""
+
+    def __init__(self, runs: Sequence[RunSettings], quantities: Sequence[str], steps: int) -> None:
+        options: Sequence[SensorOptions] = _options(runs, quantities)
+        streams = [(run.case.seed, quantity) for quantity in quantities for run in runs]
         self._gain = np.array([each.gain for each in options])
         noise, self._quantum, self._bias = np.array([each.errors for each in options]).T
         self._noise = _drawn(
             [
-                gaussian(seed, quantity) if sigma else None
-                for seed, sigma in zip(seeds, noise, strict=True)
+                gaussian(*stream) if sigma else None
+                for stream, sigma in zip(streams, noise, strict=True)
             ],
             steps,
         )
@@ -98,8 +100,8 @@ class _Sensor:
             self._noise *= noise
         self._lost = _drawn(
             [
-                losses(seed, quantity, each) if each.dropout else None
-                for seed, each in zip(seeds, options, strict=True)
+                losses(*stream, each) if each.dropout else None
+                for stream, each in zip(streams, options, strict=True)
             ],
             steps,
         )
@@ -108,10 +110,10 @@ class _Sensor:
         self._columns = np.arange(len(options))
         self._value = np.full(len(options), math.nan)
         self.unsure = np.zeros(len(options), dtype=bool)
-        """Runs with a reading that rounding may have changed by a quantum, (R,)."""
+        """Sensors with a reading that rounding may have changed by a quantum, (Q R,)."""
 
     def take(self, step: int, truth: np.ndarray) -> np.ndarray:
-        """Return the measurements of `truth` at step k, (R,)."""
+        """Return the measurements of `truth` at step k, (Q R,)."""
         self._readings[step] = self._reading(step, truth)
         value = self._readings[np.maximum(step - self._delay, 0), self._columns]
         if self._lost is not None:
@@ -146,7 +148,7 @@ def _drawn(streams: Sequence[Iterator[float] | None], steps: int) -> np.ndarray 
 
 
 class _Teeth:
-    """Encoder wheels of R shafts, the counterpart of `ToothCount` where there are teeth."""
+    """Encoder wheels of shafts, (Q R,), the counterpart of `ToothCount` where there are teeth."""
 
     def __init__(self, options: Sequence[SpeedSensor]) -> None:
         teeth = np.array([each.teeth for each in options])
@@ -161,10 +163,10 @@ class _Teeth:
         """Counts of the last periods, in a ring."""
         self._columns = np.arange(len(options))
         self.unsure = np.zeros(len(options), dtype=bool)
-        """Runs with a count that rounding may have changed by a tooth, (R,)."""
+        """Shafts with a count that rounding may have changed by a tooth, (Q R,)."""
 
     def take(self, step: int, position: np.ndarray, speed: np.ndarray) -> np.ndarray:
-        """Return the counted speeds in rad/s at step k, true ones without teeth, (R,)."""
+        """Return the counted speeds in rad/s at step k, true ones without teeth, (Q R,)."""
         if not self._any:
             return speed
         if step == 0:
