@@ -62,7 +62,7 @@ def site(
     """
     Return the built site; a warning of Sphinx is an error.
 
-    The theme of the site takes half of the time for the list of all pages beside each page.
+    The theme of the site takes a quarter of the time for the list of all pages beside each page.
     """
     from website.__main__ import build
 

@@ -27,7 +27,6 @@ from ddct_controllers.mpc.estimators import AS_DRAWN, FULL, ObserverInputs
 from ddct_controllers.mpc.model.transmission_model import SLIP_SPEED, TransmissionModel
 from ddct_controllers.mpc.program.settings import InputTerms, MpcSettings, OutputTerms
 from ddct_plant.base.units import rpm_from_rad_s
-from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 Change = Callable[[MpcSettings], MpcSettings]
@@ -48,9 +47,9 @@ class Reading:
     """Function that wraps the controller to change C_fOL."""
     architecture: str = 'detailed'
 
-    def run(self, row: TableRow, scenario: Scenario = THESIS_SCENARIO) -> StudyRun:
-        """Return the run of a row in a scenario with the thesis's driveline."""
-        run = RunSettings(KnownSettings(scenario, self.architecture))
+    def run(self, row: TableRow) -> StudyRun:
+        """Return the run of a row in the thesis scenario."""
+        run = RunSettings(KnownSettings(THESIS_SCENARIO, self.architecture))
         settings = self.change(row.settings())
         parts = self.knowledge.parts(run.known, self.model, noise_rpm=self.noise_rpm)
         return study_run(run, self.beside(MpcController(*parts, settings)))

@@ -9,18 +9,17 @@ from ddct_bringup.reproduction.numbers.thesis_number import Finding
 from ddct_bringup.reproduction.studies.study import TABLE_5_1, Study, cells
 from ddct_bringup.reproduction.study_run import StaticControllerAlone, StudyRun, study_run
 from ddct_bringup.reproduction.values.orders import (
-    SLIP_RATINGS,
     WORN,
-    WORN_ARCHITECTURE,
     judge_table_5_2,
     rows_of_table_5_2,
+    runs_of_table_5_2,
 )
 from ddct_bringup.thesis.table_5_1 import CALIBRATED, PREDICTED_ROWS, THESIS_TABLE, ThesisRow
 from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 from ddct_plant.program.table import Weight
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 CHANGES: Mapping[str, Sequence[str]] = {
     'none': (),
@@ -102,11 +101,8 @@ def _largest_deviation(runs: Mapping[str, StudyRun]) -> str:
 def _words_that_hold(scenario: Scenario) -> str:
     findings: list[Finding] = []
     for gain in WORN:
-        settings = RunSettings(
-            KnownSettings(scenario, WORN_ARCHITECTURE), CaseSettings(wear_gain=gain)
-        )
-        runs = {name: study_run(settings, name) for name in SLIP_RATINGS}
-        findings += judge_table_5_2(gain, rows_of_table_5_2(runs)).values()
+        rows = rows_of_table_5_2(runs_of_table_5_2(scenario, gain))
+        findings += judge_table_5_2(gain, rows).values()
     return f'{sum(finding.holds for finding in findings)} of {len(findings)}'
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from ddct_bringup.reproduction.numbers.thesis_number import Finding
 from ddct_bringup.reproduction.studies.study import FINER_WEAR_GAINS, Study, identified_by
-from ddct_bringup.reproduction.study_run import StudyRun, study_run
+from ddct_bringup.reproduction.study_run import StudyRun
 from ddct_bringup.reproduction.values.orders import (
     OSCILLATION_RATINGS,
     SLIP_RATINGS,
@@ -18,10 +18,10 @@ from ddct_bringup.reproduction.values.orders import (
     judge_table_5_2,
     ratings_of,
     rows_of_table_5_2,
+    runs_of_table_5_2,
 )
 from ddct_bringup.verdict.state import ENGAGED, NOT_ENGAGED
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 SCENARIOS = ('thesis', 'thesis_sticking')
 """Names of the scenarios: the thesis's linear clutch, and the one that sticks."""
@@ -103,11 +103,7 @@ def rows_of(scenario: str, wear_gain: float) -> list[tuple[str, ...]]:
 
 def rated_rows(scenario: str, wear_gain: float) -> list[RatedRow]:
     """Return the rated runs of the table's controllers in a scenario with a wear gain."""
-    settings = RunSettings(
-        KnownSettings(load_scenario(scenario), WORN_ARCHITECTURE),
-        CaseSettings(wear_gain=wear_gain),
-    )
-    runs = {name: study_run(settings, name) for name in SLIP_RATINGS}
+    runs = runs_of_table_5_2(load_scenario(scenario), wear_gain)
     states = {name: run.scores.state for name, run in runs.items()}
     slips, torsion, acceleration = rows_of_table_5_2(runs)
     ranked = [_of_sound(row, runs) for row in (slips, torsion, acceleration)]

@@ -35,6 +35,7 @@ LAST_S = 0.5
 SEED = 4
 CLOSE = 0.02
 """Relative error below which the wear gain counts as identified."""
+_LOAD_STEP_REMARK = f'The load step is {LOAD_STEP_N_M:g} N m at the wheels at {LOAD_STEP_S:g} s.'
 _LOAD_STEP = LOAD_STEP_N_M, steps_in('load step', LOAD_STEP_S)
 
 
@@ -71,11 +72,7 @@ def _study(architecture: str, wear_gains: tuple[float, ...], remark: str) -> Stu
             for name in CONTROLLERS
             for gain in wear_gains
         ],
-        (
-            remark,
-            f'The load step is {LOAD_STEP_N_M:g} N m at the wheels at {LOAD_STEP_S:g} s; its '
-            'column is w_d at the end in rpm.',
-        ),
+        (remark, _LOAD_STEP_REMARK, '"after load step" is w_d at the end with it, in rpm.'),
     )
 
 
@@ -103,7 +100,7 @@ def wear_estimate() -> Study:
         ),
         [_estimate_row(gain, level) for level in (0.0, noise) for gain in FINER_WEAR_GAINS],
         (
-            f'The load step is {LOAD_STEP_N_M:g} N m at the wheels at {LOAD_STEP_S:g} s.',
+            _LOAD_STEP_REMARK,
             'Torque flows from about 0.05 s on; the noise is the standard deviation that the '
             'filter assumes, drawn with a fixed seed.',
         ),

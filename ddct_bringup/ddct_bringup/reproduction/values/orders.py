@@ -13,9 +13,11 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from ddct_bringup.reproduction.numbers.thesis_number import Finding
-from ddct_bringup.reproduction.study_run import StudyRun, thesis_run
+from ddct_bringup.reproduction.study_run import StudyRun, study_run, thesis_run
 from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 from ddct_plant.base.timebase import steps_in
+from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 CLEARLY = 2.0
 """Factor that `huge`, `very bad`, `no oscillations` and "the only one with an effect" require."""
@@ -102,6 +104,14 @@ def sigma_text(rows: Sequence[Row], names: Iterable[str]) -> str:
     """Return the two standard deviations of some controllers as text."""
     twist, acceleration = ({name: row[name] for name in names} for row in rows)
     return f'w_sr {text("rpm", twist)}; A_x {text("m/s^2", acceleration)}'
+
+
+def runs_of_table_5_2(scenario: Scenario, wear_gain: float) -> dict[str, StudyRun]:
+    """Return the runs of the table's controllers in a scenario with a worn clutch, by name."""
+    settings = RunSettings(
+        KnownSettings(scenario, WORN_ARCHITECTURE), CaseSettings(wear_gain=wear_gain)
+    )
+    return {name: study_run(settings, name) for name in SLIP_RATINGS}
 
 
 def rows_of_table_5_2(runs: Mapping[str, StudyRun]) -> list[Row]:
