@@ -20,7 +20,7 @@ from ddct_bringup.documents.chart import (
     Panel,
     legend,
 )
-from ddct_bringup.documents.palette import mark_svg, patch_svg, sample_svg
+from ddct_bringup.documents.palette import NEUTRAL, mark_svg, patch_svg, sample_svg
 
 if TYPE_CHECKING:
     from bokeh.models import Model, Range
@@ -173,6 +173,7 @@ def key_sample(key: Key) -> Markup:
 def _draw_panel(chart: Chart, panel: Panel, shared: 'dict[str, Range]') -> 'figure':
     """Return the figure of a panel; `shared` has the ranges of those before it by x and y."""
     from bokeh.models import DataRange1d
+    from bokeh.models.annotations import Title
 
     down = panel.y.span[::-1] if panel.downward and panel.y.span else panel.y.span
     drawn = styled_figure(
@@ -180,7 +181,7 @@ def _draw_panel(chart: Chart, panel: Panel, shared: 'dict[str, Range]') -> 'figu
         tools='box_zoom,pan,reset,save',
         active_drag=None,
         window_axis='none',
-        title=panel.title,
+        title=Title(text=panel.title, text_color=NEUTRAL),
         x_range=shared.get('x') or panel.x.span or DataRange1d(),
         y_range=shared.get('y') or down or DataRange1d(),
         x_axis_label=panel.x.label or None,
@@ -215,6 +216,7 @@ def _draw(drawn: 'figure', item: Item, panel: Panel) -> None:
             line_width=1.5,
             fill_color=item.colour if item.filled else None,
             alpha=item.opacity,
+            level='annotation' if item.whole else 'glyph',
         )
     elif isinstance(item, Area):
         drawn.varea(

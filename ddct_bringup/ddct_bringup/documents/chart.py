@@ -59,6 +59,8 @@ class Marks:
     opacity: float = 1.0
     hint: str = ''
     """Text at the pointer, the label unless given."""
+    whole: bool = False
+    """Whether marks at the edge of the panel are drawn whole."""
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,9 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-Charts as PNG and SVG files, and as figures for Python, by matplotlib.
+Charts as files: PNG and SVG, and figures for Python, by matplotlib; pages by Bokeh.
 
-Pages have the same charts by Bokeh (`bokeh_charts`), which cannot write a file without a browser.
+Bokeh cannot write a picture without a browser.
 """
 
 from pathlib import Path
@@ -20,8 +20,10 @@ from ddct_bringup.documents.chart import (
     Panel,
     legend,
 )
+from ddct_bringup.documents.page import chart_page
 from ddct_controllers.design.drawing.chart_style import chart_style, headed, save_chart
 from ddct_controllers.design.drawing.line_styles import LineStyle, dash_style
+from ddct_plant.files.output_file import write_text
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -47,7 +49,14 @@ _MARKS = {
 
 
 def write_chart(chart: Chart, path: Path) -> None:
-    """Write a chart as PNG or SVG by the file's ending; raise DdctError where it cannot be."""
+    """
+    Write a chart as PNG, SVG or, by Bokeh, as a page, by the file's ending.
+
+    Raise DdctError where the file cannot be written.
+    """
+    if path.suffix == '.html':
+        write_text(str(path), chart_page(chart))
+        return
     with chart_style():
         save_chart(matplotlib_figure(chart), path)
 
@@ -116,7 +125,7 @@ def _draw(axes: 'Axes', item: Item) -> None:
         drawn.set_alpha(item.opacity)
     elif isinstance(item, Marks):
         (drawn,) = axes.plot(item.x, item.y, label=item.label or None, **_mark_style(item))
-        drawn.set_alpha(item.opacity)
+        drawn.set(alpha=item.opacity, clip_on=not item.whole)
     elif isinstance(item, Area):
         axes.fill_between(
             item.x, item.low, item.high, color=item.colour, alpha=item.opacity, linewidth=0.0

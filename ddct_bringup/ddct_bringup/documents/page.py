@@ -72,6 +72,11 @@ def html_page(document: Document) -> str:
     )
 
 
+def chart_page(chart: Chart) -> str:
+    """Return the HTML of a page with one chart."""
+    return html_page(Document('Chart', chart.title, chart.conditions, [Figure('', lambda: chart)]))
+
+
 def _kind_of(block: Block) -> str:
     return type(block).__name__
 

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ddct_bringup.documents.chart import Area, Chart, ChartAxis, Item, Line, Marks, Panel
+from ddct_bringup.documents.page_parts import unit_text
 from ddct_bringup.documents.palette import NEUTRAL, LineLook, looks
 from ddct_bringup.floor.front import ControllerRow
 from ddct_bringup.floor.metric_units import METRICS
@@ -95,7 +96,8 @@ def _panel(
                 filled=not look.dash,
                 size=9.0,
                 hint=f'{mark.controller}: {mark.value:.4g}',
+                whole=True,
             )
         )
-    label = f'{metric.replace("_", " ")}, {METRICS[metric]}'
+    label = f'{metric.replace("_", " ")}, {unit_text(METRICS[metric])}'
     return Panel(tuple(items), across, ChartAxis(label, (0.0, ceiling)))

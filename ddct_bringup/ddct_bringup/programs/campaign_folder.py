@@ -55,7 +55,7 @@ def add_parsers(subparsers: 'argparse._SubParsersAction[ProgramParser]') -> None
     show.add_argument('--json', metavar='FILE', help="write summary.json to FILE; '-': stdout")
     show.add_argument('--csv', metavar='FILE', help="write the rows as CSV to FILE; '-': stdout")
     show.add_argument(
-        '--figure', metavar='FILE', help='draw the distributions as FILE.png or FILE.svg'
+        '--figure', metavar='FILE', help='draw the distributions: a .png, .svg or .html file'
     )
 
 

@@ -121,7 +121,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument('--json', metavar='FILE', help="also write the rows; '-' is stdout")
     parser.add_argument('--csv', metavar='FILE', help="also write them as CSV; '-' is stdout")
-    parser.add_argument('--figure', metavar='FILE', help='also draw them: a .png or .svg file')
+    parser.add_argument(
+        '--figure', metavar='FILE', help='also draw them: a .png, .svg or .html file'
+    )
     add_limits_option(parser)
     add_settings_options(parser)
     return parser

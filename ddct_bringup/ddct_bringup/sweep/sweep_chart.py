@@ -127,6 +127,7 @@ def _of_controller(
                 filled=False,
                 size=9.0,
                 hint=f'{name}: {meaning}',
+                whole=True,
             )
 
 

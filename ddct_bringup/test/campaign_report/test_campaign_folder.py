@@ -102,7 +102,7 @@ def test_a_figure_of_another_kind_is_refused_before_anything_is_written(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(['show', str(folder), '--figure', 'wear.txt']) == 1
-    assert 'wear.txt: name a file that ends in .png or .svg' in capsys.readouterr().err
+    assert 'wear.txt: name a file that ends in .png, .svg or .html' in capsys.readouterr().err
     assert not (folder / PAGE).exists()
 
 

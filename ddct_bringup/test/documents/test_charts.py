@@ -120,3 +120,7 @@ def test_a_file_and_python_have_the_chart_with_its_legend(tmp_path):
     assert figure.get_suptitle() == 'pi and ls8'
     write_chart(CHART, tmp_path / 'chart.svg')
     assert '<svg' in (tmp_path / 'chart.svg').read_text()
+    write_chart(CHART, tmp_path / 'chart.html')
+    page = (tmp_path / 'chart.html').read_text()
+    assert '<h1>pi and ls8</h1>' in page
+    assert page.count('<div class="chart"') == 2

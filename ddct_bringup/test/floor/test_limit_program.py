@@ -109,7 +109,7 @@ def test_the_proof_that_no_run_locks_then_is_the_same_for_every_metric(
         ([*LAUNCH, '--lock-times', '1:0.5:3'], 'rising'),
         (['--metrics', 'beauty'], 'beauty'),
         ([*LAUNCH, '--cap', 'peak_acceleration=1'], '--cap peak_acceleration=1'),
-        ([*LAUNCH, '--figure', 'front.pdf'], '.png or .svg'),
+        ([*LAUNCH, '--figure', 'front.pdf'], '.png, .svg or .html'),
         (['--metrics', 'slip_acceleration_at_lock', '--lock-times', '1'], 'not defined'),
     ],
 )

@@ -11,7 +11,7 @@ from ddct_plant.base.errors import DdctError, ParameterError
 
 STDOUT = '-'
 """File name for standard output."""
-_PICTURES = ('.png', '.svg')
+_PICTURES = ('.png', '.svg', '.html')
 
 
 def require_place(option: str, target: str | None) -> None:
@@ -40,7 +40,7 @@ def require_picture(option: str, target: str | None) -> None:
     """Raise DdctError, before long work, where no picture can be written to `target`."""
     if target and Path(target).suffix not in _PICTURES:
         raise ParameterError(
-            f'{option} {target}: name a file that ends in .png or .svg', key=option
+            f'{option} {target}: name a file that ends in .png, .svg or .html', key=option
         )
     require_place(option, target)
 

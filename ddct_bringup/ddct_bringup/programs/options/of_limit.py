@@ -58,7 +58,9 @@ def limit_parser(program: str) -> argparse.ArgumentParser:
         help='also find the least lock time at which a metric is at most this; may be repeated',
     )
     parser.add_argument('--json', metavar='FILE', help="also write it as JSON; '-' is stdout")
-    parser.add_argument('--figure', metavar='FILE', help='also draw it: a .png or .svg file')
+    parser.add_argument(
+        '--figure', metavar='FILE', help='also draw it: a .png, .svg or .html file'
+    )
     add_workers_option(parser)
     add_settings_options(parser)
     return parser
