@@ -120,7 +120,9 @@ class Summary:
 
     runs: int
     grid: tuple[str, ...]
+    """Keys that are varied on a grid."""
     random: tuple[str, ...]
+    """Keys that are drawn at random."""
     method: Method
     other_version: OtherVersion
     groups: tuple[GroupSummary, ...]
