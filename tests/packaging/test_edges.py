@@ -25,6 +25,8 @@ FILES = {
     'ddct_bringup/campaign/specification/distribution.py': 'specification of a campaign, YAML',
     'ddct_bringup/campaign/specification/named_files.py': 'specification of a campaign, YAML',
     'ddct_bringup/campaign/specification/parts.py': 'specification of a campaign, YAML',
+    'ddct_bringup/campaign_report/maps_figure.py': 'keywords of Bokeh',
+    'ddct_bringup/documents/document.py': 'figures of Bokeh',
     'ddct_bringup/manifest/manifest.py': 'manifest.json',
     'ddct_bringup/manifest/runs.py': 'manifest.json',
     'ddct_bringup/schemas.py': 'types of the keys of documents',
