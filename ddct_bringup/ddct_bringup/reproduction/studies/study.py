@@ -161,7 +161,7 @@ _UNDEFINED = {
     'peak jerk m/s^3': METRICS['peak_jerk_m_s3'].undefined,
     'friction kJ': METRICS['friction_work_j'].undefined,
     'releases': 'the clutch never locked, or cannot',
-    'largest deviation of the fitted rows, tolerances': 'w_d does not reach zero in one of them',
+    'fit, tolerances': 'w_d does not reach zero with one of the fitted controllers',
     **dict.fromkeys(
         ('w_d, printed', 'w_sr and A_x, printed'), 'the thesis rates no clutch of this wear'
     ),
