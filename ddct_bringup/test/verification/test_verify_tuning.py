@@ -117,7 +117,7 @@ def test_a_tuning_carries_its_controller(tmp_path: Path) -> None:
         controller=str(outer),
         parameters={'gain': {'low': 0.05, 'high': 0.5}},
         constraints={'engaged': {'at_least': 0.0}},
-        trials=2,
+        trials=4,
     )
     shutil.rmtree(work)
     moved = folder.rename(tmp_path / 'moved')
