@@ -22,19 +22,18 @@ from ddct_bringup.documents.chart import (
 )
 from ddct_bringup.documents.palette import NEUTRAL, mark_svg, patch_svg, sample_svg
 
+_LABELS_PX = 70
+"""Width left of panels below each other, so that equal times are below each other too."""
+
 if TYPE_CHECKING:
     from bokeh.models import Model, Range
     from bokeh.models.renderers import GlyphRenderer
     from bokeh.plotting import figure
 
 
+@cache
 def library() -> Markup:
     """Return BokehJS from the installed package, for a script element of a page."""
-    return _library()
-
-
-@cache
-def _library() -> Markup:
     from bokeh.resources import Resources
 
     # At a lower log level it warns about charts without a visible line.
@@ -189,6 +188,8 @@ def _draw_panel(chart: Chart, panel: Panel, shared: 'dict[str, Range]') -> 'figu
         x_axis_type='log' if panel.x.logarithmic else 'linear',
         y_axis_type='log' if panel.y.logarithmic else 'linear',
     )
+    if chart.columns == 1:
+        drawn.min_border_left = _LABELS_PX
     if chart.same_x:
         shared['x'] = drawn.x_range
     if chart.same_y:

@@ -21,7 +21,12 @@ from ddct_bringup.documents.chart import (
     legend,
 )
 from ddct_bringup.documents.page import chart_page
-from ddct_controllers.design.drawing.chart_style import chart_style, headed, save_chart
+from ddct_controllers.design.drawing.chart_style import (
+    chart_style,
+    headed,
+    save_chart,
+    typeset,
+)
 from ddct_controllers.design.drawing.line_styles import LineStyle, dash_style
 from ddct_plant.files.output_file import write_text
 
@@ -109,7 +114,7 @@ def _draw_panel(axes: 'Axes', panel: Panel) -> None:
 
 
 def _set_axis(which: Any, axis: ChartAxis, set_scale: Any, set_limits: Any) -> None:
-    which.set_label_text(axis.label)
+    which.set_label_text(typeset(axis.label))
     if axis.logarithmic:
         set_scale('log')
     if axis.span:

@@ -158,7 +158,7 @@ def test_a_table_has_a_row_per_run_with_metrics_and_state(worn):
 def test_a_figure_has_a_line_per_run_in_each_chart(worn):
     other = api.run('pi', duration=3.0)
     charts = api.figure([worn, other], quantities=['w_d', 'C_m']).axes
-    assert [axes.get_ylabel() for axes in charts] == ['w_d, rpm', 'C_m, N m']
+    assert [axes.get_ylabel() for axes in charts] == ['$w_{d}$, rpm', '$C_{m}$, N m']
     labels = [line.get_label() for line in charts[0].lines]
     assert labels == ['ls8, wear 0.7', 'pi, wear 1']
     colours = [line.get_color() for axes in charts for line in axes.lines]
