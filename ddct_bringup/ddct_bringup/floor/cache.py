@@ -21,7 +21,7 @@ from ddct_bringup.manifest.code import code_digest
 from ddct_bringup.manifest.manifest import file_digest
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.cache_folder import cache_folder
-from ddct_plant.files.json_records import read_json, to_json
+from ddct_plant.files.json_records import json_line, read_json
 from ddct_plant.files.output_file import write_text
 from ddct_plant.scenario.settings import is_handover_file
 
@@ -111,14 +111,14 @@ def store(digest: str, values: KnownFloor) -> None:
     folder = cache_folder(_KIND)
     if folder is None:
         return
-    content = to_json(_Content(values, _digest_of_values(values)))
+    content = json_line(_Content(values, _digest_of_values(values)))
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        write_text(str(folder / f'{digest}.json'), json.dumps(content, allow_nan=False))
+        write_text(str(folder / f'{digest}.json'), content)
     except (OSError, DdctError):
         return
 
 
 def _digest_of_values(values: KnownFloor) -> str:
     """Return the SHA-256 of values, which is the same for those that JSON reads back."""
-    return hashlib.sha256(json.dumps(to_json(values)).encode()).hexdigest()
+    return hashlib.sha256(json_line(values).encode()).hexdigest()

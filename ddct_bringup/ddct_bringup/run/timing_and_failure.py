@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Files beside a bag: `timing.json`, and `failed_run.json` of a run that failed."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,7 +15,7 @@ from ddct_plant.base.errors import (
     require_number,
     without_folders,
 )
-from ddct_plant.files.json_records import read_json, to_json, write_json
+from ddct_plant.files.json_records import json_line, read_json, write_json
 from ddct_plant.files.output_file import write_text
 
 TIMING_FILE = 'timing.json'
@@ -47,7 +46,7 @@ class RunTiming(RealtimeCounts):
 
     def write(self, folder: Path) -> None:
         """Write `timing.json` into a bag's folder; raise DdctError when that fails."""
-        write_text(str(folder / TIMING_FILE), json.dumps(to_json(self)) + '\n', _ADVICE)
+        write_text(str(folder / TIMING_FILE), json_line(self) + '\n', _ADVICE)
 
 
 def read_timing(folder: Path) -> RunTiming | None:

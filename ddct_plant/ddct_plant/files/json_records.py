@@ -71,6 +71,11 @@ def json_text(obj: Any) -> str:
     return json.dumps(to_json(obj), indent=2, allow_nan=False) + '\n'
 
 
+def json_line(obj: Any) -> str:
+    """Return a record as one line, as in a bag; raise ValueError for NaN and infinity."""
+    return json.dumps(to_json(obj), allow_nan=False)
+
+
 def write_json(target: str, obj: Any, advice: str = '') -> None:
     """Write a record by `write_text`; raise ValueError for NaN and infinity."""
     write_text(target, json_text(obj), advice)

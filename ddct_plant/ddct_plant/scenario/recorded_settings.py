@@ -6,7 +6,6 @@ The settings of a run as one JSON: in its bag, and in the files from which its n
 It has two parts. `known` is what every node and controller knows, `case` what the plant alone has.
 """
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +15,7 @@ from ddct_plant.base.clutch_kinds import LINEAR
 from ddct_plant.base.errors import DdctError, ParameterError, require_name, require_number
 from ddct_plant.base.options import options_of
 from ddct_plant.base.timebase import LONGEST_S, PERIOD_S, steps_in
-from ddct_plant.files.json_records import from_json, parse_json, read_json, to_json
+from ddct_plant.files.json_records import from_json, json_line, parse_json, read_json
 from ddct_plant.scenario.content import scenario_content, scenario_from_mapping
 from ddct_plant.scenario.differences import values_by_key
 from ddct_plant.scenario.scenario import Scenario
@@ -143,7 +142,7 @@ class RecordedSettings:
 
     def text(self) -> str:
         """Return the JSON text in one line; numbers keep every bit."""
-        return json.dumps(to_json(self), allow_nan=False)
+        return json_line(self)
 
 
 def settings_of_bag(custom_data: Mapping[str, str]) -> RecordedSettings:
@@ -223,7 +222,7 @@ def known_values(known: KnownSettings) -> dict[str, object]:
 
 def values_text(values: Mapping[str, object]) -> str:
     """Return values of settings as JSON, for another node to compare."""
-    return json.dumps(to_json(values), allow_nan=False)
+    return json_line(values)
 
 
 def values_of_scenario(name: str, scenario: Scenario) -> dict[str, object]:
