@@ -63,6 +63,8 @@ def try_wheels(wheels: Sequence[Path], folder: Path) -> Iterator[str]:
     ddct = python.with_name('ddct')
     run(ddct, 'compare', '--headless', '--controllers', 'pi,ls8', '--out', 'runs', cwd=folder)
     yield f'ddct compare --headless: {len(list(folder.glob("runs/*/*.mcap")))} bags'
+    run(python, '-m', 'ddct_bringup.schemas', 'schemas', cwd=folder)
+    yield f'schemas of its JSON: {len(list(folder.glob("schemas/*.schema.json")))}'
     yield f'rows of the benchmark: {run(python, "-c", ROWS, cwd=folder).strip()}'
     (folder / 'typed.py').write_text(TYPED, encoding='utf-8')
     run(*install, '--constraint', constraints, 'mypy', cwd=folder)
