@@ -32,15 +32,26 @@ def why_not_linear(controllers: Sequence[Controller]) -> list[str]:
     """
     Return in one line why each of these controllers is not its model, empty if it is.
 
-    They are tried in a process of their own: foreign code may end it, or take too long. Then each
-    has one for itself, so that no controller is judged by another.
+    Those of other packages are tried in a process of their own: they may end it, or take too long.
     """
+    foreign = [each for each in controllers if not _is_ours(each)]
+    apart = iter(_why_apart(foreign))
+    return [_why(each) if _is_ours(each) else next(apart) for each in controllers]
+
+
+def _is_ours(controller: Controller) -> bool:
+    package, _, _ = type(controller).__module__.partition('.')
+    return package == Controller.__module__.partition('.')[0]
+
+
+def _why_apart(controllers: Sequence[Controller]) -> list[str]:
+    """Return the same from one process, or where that fails from one for each controller."""
     try:
         return in_own_process(partial(_each_why, controllers)) if controllers else []
     except ProcessEndedError as error:
         if len(controllers) == 1:
             return [f'its process failed when the controller was tried: {error}']
-        return [why for each in controllers for why in why_not_linear([each])]
+        return [why for each in controllers for why in _why_apart([each])]
 
 
 def _each_why(controllers: Sequence[Controller]) -> list[str]:
@@ -54,6 +65,7 @@ def _why(controller: Controller) -> str:
             return 'the controller is not linear'
         controller.reset()
         same = _matches_model(controller, model)
+        controller.reset()
     except FOREIGN_FAILURES as error:
         return f'the controller failed when it was tried ({type(error).__name__}: {error})'
     return '' if same else 'the controller does not do what its linear_model says'
