@@ -97,6 +97,18 @@ def test_the_page_has_every_number_and_reason_and_escapes_what_it_shows() -> Non
     assert '<code>ddct run --x &#34;a b&#34;</code>' in page
 
 
+def test_wide_groups_of_columns_are_tables_of_their_own_on_a_terminal() -> None:
+    numbers = [Column(name, form='d', group=of) for of in ('ours', 'theirs') for name in 'abcd']
+    table = Table('Counts', (COLUMNS[0], *numbers), [('pi', *range(8))])
+    stream = io.StringIO()
+    print_document(Document('Test', 'Test', '', [table]), stream)
+    ours, theirs = stream.getvalue().split('Counts, theirs\n')
+    assert [line.split() for line in ours.splitlines()[:3]] == [
+        *(['Counts,', 'ours'], ['controller', *'abcd'], ['pi', *'0123']),
+    ]
+    assert theirs.splitlines()[1].split() == ['pi', *'4567']
+
+
 def test_blocks_without_content_are_left_out() -> None:
     assert given(None, Table('', COLUMNS, []), Remarks('x', []), Section('y', [])) == []
 
