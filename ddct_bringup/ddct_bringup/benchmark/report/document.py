@@ -8,7 +8,7 @@ from ddct_bringup.benchmark.report import rules, texts
 from ddct_bringup.benchmark.report.judged_sections import judged_sections
 from ddct_bringup.benchmark.result_types import JudgedResult, Result
 from ddct_bringup.benchmark.update_times import NoUpdateTime, UpdateTimesFile
-from ddct_bringup.campaign_report.document import share_cell
+from ddct_bringup.campaign_report.tables import share_cell
 from ddct_bringup.documents.document import (
     Cell,
     Column,

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from ddct_bringup.benchmark.report import texts
 from ddct_bringup.benchmark.result_types import JudgedResult, Result
-from ddct_bringup.campaign_report.document import (
+from ddct_bringup.campaign_report.tables import (
     EFFECT_COLUMNS,
     difference_interval,
     effect_cells,
