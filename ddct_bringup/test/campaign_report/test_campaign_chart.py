@@ -70,6 +70,7 @@ def test_a_curve_of_very_many_runs_keeps_its_ends():
     assert curve[-1, 1] == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('highest', [0.0123, 9.9, 123.0, 100_000.0, 123_456.0, 987_654.0])
 def test_tick_labels_of_the_x_axis_do_not_overlap(highest):
     from matplotlib.backends.backend_agg import FigureCanvasAgg

@@ -22,6 +22,8 @@ from ddct_bringup.documents.chart import (
 from ddct_bringup.documents.chart_files import matplotlib_figure, write_chart
 from ddct_bringup.documents.palette import NEUTRAL, looks
 
+pytestmark = pytest.mark.slow
+
 TIMES = np.array([0.0, 1.0, 2.0])
 FIRST, SECOND = looks(2)
 CHART = Chart(
@@ -103,7 +105,6 @@ def test_a_logarithmic_axis_and_a_title_come_on_the_figure():
     assert drawn.title.text == 'pi'  # type: ignore[union-attr]
 
 
-@pytest.mark.slow
 @pytest.mark.filterwarnings('error')
 def test_a_file_and_python_have_the_chart_with_its_legend(tmp_path):
     figure = matplotlib_figure(CHART)
