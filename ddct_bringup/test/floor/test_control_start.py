@@ -37,6 +37,7 @@ def settings_of(**further):
     return RunSettings.of(load_scenario('thesis'), further)
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_one_simulation_up_to_control_start_serves_a_comparison_and_its_report(simulated):
     runs = []
