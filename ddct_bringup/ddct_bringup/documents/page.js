@@ -58,10 +58,10 @@ const colours = (() => {
     body.append(...(descending ? rows.reverse() : rows));
   }
 
-  // Browsers leave buttons out of the headings that they repeat on paper, so some are plain elements.
+  // Browsers leave buttons out of the headings that they repeat on paper, so these are plain elements.
   document.querySelectorAll('.sort').forEach((button) => {
     button.addEventListener('click', () => sort(button));
-    if (button.tagName !== 'BUTTON') button.addEventListener('keydown', (event) => {
+    button.addEventListener('keydown', (event) => {
       if (event.key !== 'Enter' && event.key !== ' ') return;
       event.preventDefault();
       sort(button);
