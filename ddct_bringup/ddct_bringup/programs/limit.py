@@ -45,12 +45,9 @@ def _limit(argv: list[str]) -> int:
             'another time'
         )
     if options.json:
-        shell.write_json(options.json, found.document)
+        shell.write_json(options.json, found.written)
     if options.json != STDOUT:
-        for table in found.tables:
-            shell.print_table(table)
-        for note in found.notes:
-            shell.print_note(note)
+        shell.print_document(found.shown)
     if options.figure:
         found.draw(Path(options.figure))
     return 0 if found.any_possible else 1
