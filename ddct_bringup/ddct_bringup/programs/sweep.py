@@ -79,9 +79,7 @@ def _sweep(argv: list[str]) -> int:
     if options.csv:
         write_text(options.csv, shell.table_csv(sweep.table(runs)))
     stream = sys.stderr if STDOUT in (options.json, options.csv) else sys.stdout
-    shell.print_table(shell.sweep_table(sweep, runs, metrics), stream)
-    for text in shell.sweep_notes(runs):
-        shell.print_note(text, stream)
+    shell.print_document(shell.sweep_shown(sweep, runs, metrics), stream)
     if options.figure:
         shell.write_chart(shell.sweep_chart(sweep, runs, metrics), Path(options.figure))
     failed = sum(not run.scores.valid for run in runs)

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""A sweep: every controller at every point of its axes, headless, scored, judged, tabulated."""
+"""A sweep: every controller at every point of its axes, headless, scored, judged."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
@@ -16,7 +16,6 @@ from ddct_bringup.campaign.columns import runs_table, schema_over
 from ddct_bringup.campaign.rows import ScoredRow
 from ddct_bringup.campaign.run_set import RunSet
 from ddct_bringup.campaign.scored import scored_runs
-from ddct_bringup.metrics.metric import Metric
 from ddct_bringup.run.run_base import RunBase
 from ddct_bringup.scores.document import (
     NoConditions,
@@ -25,14 +24,12 @@ from ddct_bringup.scores.document import (
     UnreadableEntry,
     run_entry,
 )
-from ddct_bringup.scores.run_table import CONTROLLER, STATE, RunColumn, metric
 from ddct_bringup.scores.shift_conditions import shift_conditions
-from ddct_bringup.sweep.axis import MOST, Axis, value_text
+from ddct_bringup.sweep.axis import MOST, Axis
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.registry import Chosen, controller_label, controller_spec
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.files.json_records import Inline
-from ddct_plant.program.table import TextColumn, TextTable, Weight, table_of
 from ddct_plant.scenario.differences import scenario_title
 from ddct_plant.scenario.settings import RunSettings
 
@@ -183,52 +180,3 @@ def _row(run: ScoredRow) -> SweptEntry:
     if isinstance(entry, ShiftEntry):
         return SweptShift(run.varied, entry.conditions, entry.shift, entry.scores)
     return SweptRun(run.varied, entry.conditions, entry.scores)
-
-
-def sweep_table(sweep: Sweep, runs: Sequence[ScoredRow], metrics: Sequence[Metric]) -> TextTable:
-    """Return the table with a row per run: controller, varied values, metrics and state."""
-    title = f'{sweep.conditions}; {sweep.varied}'
-    of_runs = [_of_swept(each) for each in (CONTROLLER, *map(metric, metrics), STATE)]
-    columns = [of_runs[0], *map(_place, sweep.axes), *of_runs[1:]]
-    return table_of(title, columns, runs, complete='--json FILE')
-
-
-def _of_swept(column: RunColumn) -> TextColumn[ScoredRow]:
-    """Return the column of the scores of swept runs."""
-    return TextColumn(
-        column.heading,
-        column.form,
-        lambda run: column.value(run.scores),
-        number=column.number,
-        undefined=lambda run: _no_value(run, column),
-        weight=column.weight,
-    )
-
-
-def _no_value(run: ScoredRow, column: RunColumn) -> str:
-    """Return the reason for which a run has no value in a column."""
-    if not run.scores.valid:
-        return f'not valid: {run.scores.reason}'
-    return column.undefined(run.scores)
-
-
-def _place(axis: Axis) -> TextColumn[ScoredRow]:
-    heading = f'{axis.key}\n{axis.unit}' if axis.unit else axis.key
-    return TextColumn(
-        heading,
-        '',
-        lambda run: value_text(run.varied[axis.key]),
-        number=axis.numeric,
-        weight=Weight.IDENTIFYING,
-    )
-
-
-def sweep_notes(runs: Sequence[ScoredRow]) -> list[str]:
-    """Return notes on invalid runs with their values, as `wear_gain=0.7`."""
-    failed: dict[str, list[str]] = {}
-    for run in runs:
-        if not run.scores.valid:
-            reason = f'{run.scores.controller} is not valid: {run.scores.reason}'
-            place = ', '.join(f'{key}={value_text(value)}' for key, value in run.varied.items())
-            failed.setdefault(reason, []).append(place)
-    return [f'{reason} (at {"; ".join(places)})' for reason, places in failed.items()]

@@ -65,7 +65,8 @@ if TYPE_CHECKING:
     from ddct_bringup.scores.scored_run import ScoredRun
     from ddct_bringup.scores.validity import realtime_summary
     from ddct_bringup.sweep.axis import axis_of
-    from ddct_bringup.sweep.sweep import sweep_document, sweep_notes, sweep_table
+    from ddct_bringup.sweep.shown import sweep_shown
+    from ddct_bringup.sweep.sweep import sweep_document
     from ddct_bringup.sweep.sweep_chart import sweep_chart
     from ddct_bringup.tuning.report.document import tuning_document
     from ddct_bringup.tuning.study import require_optuna
@@ -74,7 +75,7 @@ if TYPE_CHECKING:
     from ddct_controllers.workflows.evidence import frequency_evidence
     from ddct_plant.files.json_records import write_json
     from ddct_plant.graph.spin import run_node
-    from ddct_plant.program.printed_table import print_note, print_table, print_tables
+    from ddct_plant.program.printed_table import print_note, print_tables
     from ddct_plant.program.progress import with_progress
     from ddct_plant.scenario.case import case_values
     from ddct_plant.scenario.chosen import print_adjusted
