@@ -137,15 +137,11 @@ def _show_packaged(options: argparse.Namespace) -> int:
         or options.seed is not None
     ):
         raise ParameterError('--packaged runs nothing: give it alone, or with --json')
-    tables = shell.packaged_tables()
-    document = {name: table.written for name, table in tables.items()}
-
-    def show() -> None:
-        shell.print_tables(tables.values())
-        for line in shell.packaged_lines():
-            shell.print_note(line)
-
-    show_and_write(options.json, document, show)
+    show_and_write(
+        options.json,
+        shell.packaged_written(),
+        lambda: shell.print_document(shell.packaged_document()),
+    )
     return 0
 
 

@@ -15,6 +15,7 @@ from ddct_bringup.benchmark.report.packaged import packaged_tables
 from ddct_bringup.campaign.columns import runs_table, schema_of
 from ddct_bringup.campaign.keys import SCENARIO
 from ddct_bringup.campaign.scored import Scorer
+from ddct_bringup.documents.terminal import text_table
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verification.comparison import Comparison, plain_json
 from ddct_controllers.registry import own_controller_names
@@ -104,7 +105,8 @@ def test_a_sample_of_the_rows_comes_out_again_within_the_bound(release: ReleaseR
 
 
 def test_every_controller_of_the_release_stands_in_every_table_with_all_its_runs() -> None:
-    for name, table in packaged_tables().items():
+    for name, found in packaged_tables().items():
+        table = text_table(found)
         controllers = list(dict.fromkeys(row[0] for row in table.rows))
         assert controllers == own_controller_names()
         if 'engaged' in table.headers:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from ddct_bringup.benchmark.judged import Judged
     from ddct_bringup.benchmark.report.document import benchmark_document
     from ddct_bringup.benchmark.report.folder import document_of
-    from ddct_bringup.benchmark.report.packaged import packaged_lines, packaged_tables
+    from ddct_bringup.benchmark.report.packaged import packaged_document, packaged_written
     from ddct_bringup.benchmark.result_types import Result
     from ddct_bringup.benchmark.update_times import read_update_times
     from ddct_bringup.campaign.arrow_columns import table_csv
@@ -75,7 +75,7 @@ if TYPE_CHECKING:
     from ddct_controllers.workflows.evidence import frequency_evidence
     from ddct_plant.files.json_records import write_json
     from ddct_plant.graph.spin import run_node
-    from ddct_plant.program.printed_table import print_note, print_tables
+    from ddct_plant.program.printed_table import print_note
     from ddct_plant.program.progress import with_progress
     from ddct_plant.scenario.case import case_values
     from ddct_plant.scenario.chosen import print_adjusted

@@ -2,8 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables of all packaged controllers on the development cases, from the rows of the release."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
 from itertools import combinations
 
 import numpy as np
@@ -19,6 +18,8 @@ from ddct_bringup.benchmark.report.rules import (
     states_that_count,
 )
 from ddct_bringup.campaign.keys import SCENARIO
+from ddct_bringup.documents.document import Column, Document, Note, Row, Table
+from ddct_bringup.documents.terminal import text_table
 from ddct_bringup.evaluation.dominance import compare
 from ddct_bringup.evaluation.grouped_rows import GroupedRows
 from ddct_bringup.evaluation.quantities import MAIN
@@ -26,18 +27,41 @@ from ddct_bringup.evaluation.spread import QuantitySummary
 from ddct_bringup.evaluation.summarise import summarise
 from ddct_bringup.evaluation.summary import GroupSummary, Summary
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_plant.program.table import UNDEFINED, TextTable, Weight, with_reasons
+from ddct_plant.program.table import Weight, WrittenTable
 
-_STATES = 'controller', 'engaged', 'other states'
 _HEADINGS = ('response s', 'jerk m/s^3', 'work kJ', 'A_w m/s^2', 'releases')
 """Headings of the five figures, in their order."""
-_FORMS = tuple(
-    zip(MAIN, ('.2f', '.1f', '.1f', '.2f', '.0f'), (1.0, 1.0, 1e-3, 1.0, 1.0), strict=True)
+_FORMS = ('.2f', '.1f', '.1f', '.2f', '.0f')
+_FACTORS = (1.0, 1.0, 1e-3, 1.0, 1.0)
+_CONTROLLER = Column('controller', number=False, weight=Weight.IDENTIFYING)
+_ENGAGED = Column('engaged', number=False)
+_OTHERS = Column('other states', number=False, missing='every run is engaged')
+_OF_FIGURES = (
+    _CONTROLLER,
+    Column('of', number=False, weight=Weight.IDENTIFYING),
+    *(
+        Column(heading, form=form, missing=texts.NO_VALUE)
+        for heading, form in zip(_HEADINGS, _FORMS, strict=True)
+    ),
 )
-"""Key, format and factor of each column."""
 
 
-def packaged_tables() -> Mapping[str, TextTable]:
+def packaged_document() -> Document:
+    """Return the document of the packaged controllers: their tables, and the rules below."""
+    return Document(
+        'Benchmark',
+        'The packaged controllers',
+        'From the rows of the release',
+        [*packaged_tables().values(), *map(Note, packaged_lines())],
+    )
+
+
+def packaged_written() -> Mapping[str, WrittenTable]:
+    """Return what `--packaged --json` writes: the tables by name, their cells as texts."""
+    return {name: text_table(table).written for name, table in packaged_tables().items()}
+
+
+def packaged_tables() -> Mapping[str, Table]:
     """
     Return the tables of all cases and of each scenario by name, a row for each controller.
 
@@ -47,40 +71,24 @@ def packaged_tables() -> Mapping[str, TextTable]:
     rows = release_rows(packaged_folder()).rows
     varied = tuple(Cases.packaged().whole.vary)
     every = summarise(rows.table, rows.by(varied, dominance=True))
+    columns = (_CONTROLLER, _ENGAGED, Column('95 % interval', number=False), _OTHERS)
     tables = {
-        'all': TextTable('All development cases', _headers_of_all(), list(_overall(every))),
+        'all': Table('All development cases', columns, list(_overall(every))),
         'dominance': _dominance(every),
     }
     names = np.array(rows.rows[SCENARIO].to_pylist()[: rows.cases])
     for name in dict.fromkeys(names.tolist()):
         of_scenario = rows.of_cases(np.flatnonzero(names == name))
         part = summarise(of_scenario.table, of_scenario.by(varied))
-        tables[name] = TextTable(
+        tables[name] = Table(
             f'Development cases of {name}',
-            _STATES,
+            (_CONTROLLER, _ENGAGED, _OTHERS),
             [(each.controller, *_state_cells(each)) for each in part.groups],
         )
-        tables[f'{name}_figures'] = TextTable(
-            f'Successes in development cases of {name}',
-            ('controller', 'of', *_HEADINGS),
-            list(_figure_rows(part)),
-            numbers=(False, False, *(True for _ in _HEADINGS)),
-            weights=(Weight.IDENTIFYING, Weight.IDENTIFYING),
+        tables[f'{name}_figures'] = Table(
+            f'Successes in development cases of {name}', _OF_FIGURES, list(_figure_rows(part))
         )
-    return {name: _complete(table) for name, table in tables.items()}
-
-
-def _complete(table: TextTable) -> TextTable:
-    """Return a table with the reasons of its dashes, and the option that writes all of it."""
-    return replace(with_reasons(table, _dash_reason), complete='--json FILE')
-
-
-def _dash_reason(header: str, row: Sequence[str]) -> str:
-    """Return the reason of a dash by its column."""
-    return {
-        'other states': 'every run is engaged',
-        'the first of these': 'no controller dominates it',
-    }.get(header, texts.NO_VALUE)
+    return tables
 
 
 def packaged_lines() -> Iterator[str]:
@@ -95,53 +103,50 @@ def packaged_lines() -> Iterator[str]:
     yield left_open(rules)
 
 
-def _headers_of_all() -> tuple[str, ...]:
-    return (*_STATES[:2], '95 % interval', *_STATES[2:])
-
-
-def _overall(summary: Summary) -> Iterator[tuple[str, ...]]:
+def _overall(summary: Summary) -> Iterator[Row]:
     for group in summary.groups:
         engaged, others = _state_cells(group)
         yield group.controller, engaged, group.engaged.interval_text, others
 
 
-def _state_cells(group: GroupSummary) -> tuple[str, str]:
+def _state_cells(group: GroupSummary) -> tuple[str, str | None]:
     """Return the engaged runs, and the other states with their numbers."""
-    return f'{group.engaged.count} of {group.runs}', texts.states_text(group) or '-'
+    return f'{group.engaged.count} of {group.runs}', texts.states_text(group) or None
 
 
-def _figure_rows(summary: Summary) -> Iterator[tuple[str, ...]]:
+def _figure_rows(summary: Summary) -> Iterator[Row]:
     """Yield P50, P95 and worst of each controller's figures, a row each."""
     for group in summary.groups:
-        cells = [
-            _spread_texts(group.quantities.get(key), form, factor) for key, form, factor in _FORMS
+        spreads = [
+            _spread(group.quantities.get(key), factor)
+            for key, factor in zip(MAIN, _FACTORS, strict=True)
         ]
-        for of, row in zip(('P50', 'P95', 'worst'), zip(*cells, strict=True), strict=True):
+        for of, row in zip(('P50', 'P95', 'worst'), zip(*spreads, strict=True), strict=True):
             yield group.controller, of, *row
 
 
-def _spread_texts(
-    found: QuantitySummary | None, form: str, factor: float = 1.0
-) -> tuple[str, str, str]:
+def _spread(found: QuantitySummary | None, factor: float) -> tuple[float | None, ...]:
     """Return P50, P95 and worst of the successes, times a factor."""
     if found is None or found.worst_engaged is None:
-        return UNDEFINED, UNDEFINED, UNDEFINED
+        return None, None, None
     values = found.quantiles.p50, found.quantiles.p95, found.worst_engaged.value
-    p50, p95, worst = (
-        UNDEFINED if value is None else f'{factor * value:{form}}' for value in values
-    )
-    return p50, p95, worst
+    return tuple(None if value is None else factor * value for value in values)
 
 
-def _dominance(summary: Summary) -> TextTable:
+def _dominance(summary: Summary) -> Table:
     """Return how many controllers each one dominates, and which dominate it."""
     dominators = {group.controller: group.dominated_by or () for group in summary.groups}
-    found = []
+    columns = (
+        _CONTROLLER,
+        Column('dominates'),
+        Column('dominated by'),
+        Column('the first of these', number=False, missing='no controller dominates it'),
+    )
+    rows = []
     for name, ours in dominators.items():
         dominated = sum(name in others for others in dominators.values())
-        found.append((name, str(dominated), str(len(ours)), ', '.join(ours[:3]) or '-'))
-    headers = 'controller', 'dominates', 'dominated by', 'the first of these'
-    return TextTable('Who dominates whom in all development cases', headers, found)
+        rows.append((name, dominated, len(ours), ', '.join(ours[:3]) or None))
+    return Table('Who dominates whom in all development cases', columns, rows)
 
 
 def _compared_cases(rows: CaseRows) -> str:
