@@ -246,10 +246,14 @@ def test_a_table_sorts_by_a_pressed_heading(page: Path, visit: Visitor) -> None:
     press = "document.querySelectorAll('.summary .sort')[1].click()"
     order = """[...document.querySelectorAll('.summary tbody th .run')].map((run) =>
       run.textContent.trim())"""
-    visited = visit(page, scripts=[order, press, order, press, order])
+    enter = """document.querySelectorAll('.summary .sort')[1].dispatchEvent(
+      new KeyboardEvent('keydown', {key: 'Enter', bubbles: true, cancelable: true}))"""
+    lost_on_paper = "document.querySelectorAll('thead button').length"
+    visited = visit(page, scripts=[order, press, order, enter, order, lost_on_paper])
     assert visited.values[0] == ['pi', 'ls8', 'hinf1']
     assert visited.values[2] == ['ls8', 'hinf1', 'pi']
     assert visited.values[4] == ['pi', 'hinf1', 'ls8']
+    assert visited.values[5] == 0
 
 
 def test_the_two_figures_of_the_pareto_view_are_chosen(page: Path, visit: Visitor) -> None:
