@@ -20,7 +20,7 @@ from pathlib import Path
 
 from ddct_bringup.processes.graph_nodes import NODE_PROGRAMS
 from ddct_bringup.processes.shared_memory import remove_dead_segments
-from ddct_plant.program.signals import ignore_interrupts
+from ddct_plant.program.signals import block_interrupts
 
 MARK = 'DDCT_FORK_SERVER'
 """
@@ -54,7 +54,7 @@ def serve(program: int) -> None:
     """Prepare this process, the fork server of `program`, before it forks."""
     # A group of its own, which its nodes share: Ctrl-C in a terminal reaches the program alone.
     os.setpgrp()
-    ignore_interrupts()
+    block_interrupts()
     # When the program is killed while a node is paused, the kernel sends this to the whole group
     # before it resumes that node, which shall then end as the others do.
     signal.signal(signal.SIGHUP, signal.SIG_IGN)

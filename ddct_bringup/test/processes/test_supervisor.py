@@ -419,4 +419,5 @@ def test_ctrl_c_while_nodes_start_leaves_none(
         stopping.start([NodeSpec('load', module(LIVE.format(first=OBEDIENT[0], then='pass')))])
     assert time.monotonic() - started < WITHIN_S
     assert all(not node.running for node in stopping._nodes)
+    assert all(node.code() != -signal.SIGTERM for node in stopping._nodes), 'SIGINT was lost'
     assert nodes._nodes[0].running

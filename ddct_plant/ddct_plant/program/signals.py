@@ -11,7 +11,7 @@ What SIGINT and SIGTERM do in each process.
 | a run, a campaign, a node, `stop_signals` | noted: it ends in order | noted |
 | what must be whole, `deferred_signals` | taken at its end | taken at its end |
 | a node that leaves the graph, `ends_at_once` | ends it | ends it |
-| the fork server, `ignore_interrupts` | ignored | ends it |
+| the fork server, `block_interrupts` | ignored | ends it |
 | a worker, a process for foreign code, `obey_parent` | ignored | ends it |
 
 The middleware gets no handlers: `init_ros` forbids them.
@@ -169,15 +169,17 @@ def held_back() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def ignore_interrupts() -> None:
-    """Ignore SIGINT in this process, the fork server, also one that was held back until now."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+def block_interrupts() -> None:
+    """Block SIGINT in this process, the fork server; one to a fork waits for `obey_interrupts`."""
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    # The library gives this handler back to a fork; SIG_IGN would discard what waits there.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def obey_interrupts() -> None:
-    """Take SIGINT as a new Python process does, in a fork of the fork server."""
+    """Take SIGINT as a new Python process does, in a fork, also one that came since the fork."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
 
 
 def obey_parent(parent: int) -> None:
