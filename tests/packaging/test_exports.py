@@ -9,6 +9,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from syntax import tree_of
 
 pytestmark = pytest.mark.slow
 
@@ -35,7 +36,7 @@ def modules_of(folders: Iterable[Path]) -> dict[str, ast.Module]:
     return {
         '.'.join(file.relative_to(folder.parent).with_suffix('').parts).removesuffix(
             '.__init__'
-        ): (ast.parse(file.read_text(encoding='utf-8')))
+        ): tree_of(file)
         for folder in folders
         for file in folder.rglob('*.py')
     }
