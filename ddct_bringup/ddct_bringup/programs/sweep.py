@@ -73,7 +73,8 @@ def _sweep(argv: list[str]) -> int:
     started = time.perf_counter()
     with sweep.runs() as each:
         runs = list(shell.with_progress(each, len(sweep), f'{len(sweep)} runs'))
-    _complain(f'{len(runs)} runs in {time.perf_counter() - started:.1f} s')
+    what = '1 run' if len(runs) == 1 else f'{len(runs)} runs'
+    _complain(f'{what} in {time.perf_counter() - started:.1f} s')
     if options.json:
         shell.write_json(options.json, shell.sweep_document(sweep, runs))
     if options.csv:
