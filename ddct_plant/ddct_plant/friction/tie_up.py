@@ -57,14 +57,12 @@ class TieUp:
         one, other = _CAPACITIES
         if not (max(static[one]) > 0.0 and max(static[other]) > 0.0):
             return 0.0
-        if after.events and after.courses:
-            courses = after.courses()
-        else:
-            given = before.state, before.signs, inputs, kinetic, static
+        given = before.state, before.signs, inputs, kinetic, static
+        if not after.events:
             signs = self._integrator.friction_signs(*given)
             if signs[ON_COMING] * signs[OFF_GOING] > 0:
                 return 0.0
-            courses = self._integrator.courses(*given)
+        courses = self._integrator.courses(*given)
         return SUBSTEP_S * sum(self._over(course, part) for course, part in courses)
 
     def _over(self, course: Course, part: float) -> float:

@@ -159,9 +159,9 @@ class HybridIntegrator:
         from the polynomials of its courses, which end at nodes and events.
         """
         forcing = Forcing(self.layout, inputs, kinetic, static)
-        motion = _Motion(self, forcing, np.array(state), signs)
+        motion = _Motion(self, forcing, np.array(state), signs, keep=True)
         motion.to_the_end()
-        return motion.courses()
+        return motion.courses
 
 
 def _prepare_alike(integrators: Sequence[HybridIntegrator], signs: Signs) -> None:
@@ -183,10 +183,12 @@ class _Motion:
         forcing: Forcing,
         state: np.ndarray,
         signs: Signs,
+        keep: bool = False,
     ) -> None:
         self._integrator, self._forcing = integrator, forcing
-        self._courses: list[tuple[Course | partial[Course], float]] = []
-        """Courses, or what makes those of whole pieces, and the part of a piece each lasts."""
+        self._keep = keep
+        self.courses: list[tuple[Course, float]] = []
+        """Courses and the part of a piece each lasts; empty unless they are kept."""
         self._state, self._signs = state, signs
         self._events: list[Event] = []
         self._work = [0.0] * len(signs)
@@ -203,23 +205,8 @@ class _Motion:
         w = self._forcing.at(self._signs, pieces - 1, 1.0)[: flow.inputs]
         friction = flow.force.dot(np.concatenate((self._state, w)))
         return Interval(
-            self._state.tolist(),
-            self._signs,
-            self._events,
-            self._work,
-            friction.tolist(),
-            self.courses,
+            self._state.tolist(), self._signs, self._events, self._work, friction.tolist()
         )
-
-    def courses(self) -> list[tuple[Course, float]]:
-        """Return the courses so far in their order, and the part of a piece each lasts."""
-        return [
-            (each() if isinstance(each, partial) else each, part) for each, part in self._courses
-        ]
-
-    def _course(self, signs: Signs, piece: int, start: np.ndarray) -> Course:
-        """Return the course in a mode from the state (n,) at the start of a piece."""
-        return self._integrator.flows[signs].course(start, self._forcing.at(signs, piece, 0.0))
 
     def _pass_pieces(self, first: int) -> int:
         """Integrate to the start of the next piece with an event; return its index."""
@@ -229,8 +216,8 @@ class _Motion:
         )
         count = min(lasts, layout.pieces - first)
         if count:
-            for piece, start in enumerate([self._state, *ends[: count - 1]], first):
-                self._courses.append((partial(self._course, self._signs, piece, start), 1.0))
+            if self._keep:
+                self._keep_pieces(first, [self._state, *ends[: count - 1]])
             self._state = ends[count - 1]
             nodes = values[layout.nodes[first : first + count + 1]]
             for place, element in enumerate(self._integrator.flows[self._signs].slipping):
@@ -241,11 +228,20 @@ class _Motion:
                 )
         return first + count
 
+    def _keep_pieces(self, first: int, starts: Sequence[np.ndarray]) -> None:
+        """Keep the courses of whole pieces from the states (n,) at their starts."""
+        flow = self._integrator.flows[self._signs]
+        for piece, start in enumerate(starts, first):
+            course = flow.course(start, self._forcing.at(self._signs, piece, 0.0))
+            self.courses.append((course, 1.0))
+
     def _through_events(self, piece: int) -> None:
         """Integrate to the end of a piece, from event to event."""
         done, piece_s = 0.0, self._integrator.piece_s
         orders: list[int] | None = None
-        course = self._course(self._signs, piece, self._state)
+        course = self._integrator.flows[self._signs].course(
+            self._state, self._forcing.at(self._signs, piece, 0.0)
+        )
         for _ in range(MOST_EVENTS):
             if not isfinite(course.states.sum()):
                 raise DdctError(
@@ -254,7 +250,8 @@ class _Motion:
             part, guard = course.first_event(orders, 1.0 - done)
             for element, work in zip(course.flow.slipping, course.work(part), strict=True):
                 self._work[element] += piece_s * work
-            self._courses.append((course, part))
+            if self._keep:
+                self.courses.append((course, part))
             self._state = course.at(part)
             done += part
             if guard is None:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ddct_plant.hybrid.friction_system import IntervalLayout, Signs, Values
-from ddct_plant.hybrid.mode_flow import Course, ModeFlow
+from ddct_plant.hybrid.mode_flow import ModeFlow
 
 BLOCK = 9000
 """Most elements of a matrix in one product: from 9216 OpenBLAS uses threads, with other
@@ -46,8 +46,6 @@ class Interval:
     """Friction work of each element, (N,): the integral of c |s|, not negative."""
     friction: list[float]
     """Friction torques at the end, (N,), left limits."""
-    courses: Callable[[], list[tuple[Course, float]]] | None = None
-    """Gives what `HybridIntegrator.courses` does, at hand for an interval with events."""
 
 
 class ManyEnds(NamedTuple):

@@ -195,7 +195,7 @@ class FrictionDrivelines:
         now.advance(forcing, running)
         if self._tie_ups:
             going = running & ~now.failed
-            self._tie_up_work = self._tie_ups.work(*before, forcing, now.eventful, going)
+            self._tie_up_work = self._tie_ups.work(*before, forcing, now.events, going)
         self._phases = np.array(
             [phases_of(now.signs[:, place], each[:, -1]) for place, each in enumerate(kinetics)]
         )
@@ -221,10 +221,10 @@ def events_of(motions: Motions, element: int, step: int) -> RunEvents:
     return {
         run: tuple(
             PhaseEvent(start_s + event.time_s, event.kind, event.slip_acceleration)
-            for event in period.events
+            for event in events
             if event.element == element
         )
-        for run, period in motions.eventful.items()
+        for run, events in motions.events.items()
     }
 
 

@@ -11,7 +11,7 @@ from ddct_bringup.batch.stacks import by_run, distinct, product
 from ddct_plant.base.errors import DdctError
 from ddct_plant.hybrid.friction_system import IntervalLayout, Signs
 from ddct_plant.hybrid.integrator import HybridIntegrator
-from ddct_plant.hybrid.interval_map import Interval, IntervalMap
+from ddct_plant.hybrid.interval_map import Event, Interval, IntervalMap
 
 CLOSE = 1e-9
 """
@@ -59,8 +59,8 @@ class Motions:
         """Friction torques at the end of the last period, (R, N), left limits."""
         self.work = np.array([each.work for each in start])
         """Friction work of each element in the last period, (R, N)."""
-        self.eventful: dict[int, Interval] = {}
-        """Last period of the runs that had an event in it, by the index of the run."""
+        self.events: dict[int, list[Event]] = {}
+        """Events in the last period by the index of their run."""
         self.failed = np.zeros(len(start), dtype=bool)
         """Runs that could not be integrated, (R,); they are where they were before."""
         self._maps = Maps(integrators)
@@ -72,7 +72,7 @@ class Motions:
 
     def advance(self, forcing: StackedForcing, running: np.ndarray) -> None:
         """Integrate one interval of the runs of a mask, (R,)."""
-        self.eventful = {}
+        self.events = {}
         sizes = self._maps.speeds(self.state)
         for signs, runs in by_mode(self.signs, running & ~self.failed):
             for some, at_once, matrix in self._maps.of_mode(signs, runs):
@@ -119,7 +119,7 @@ class Motions:
         self.state[run], self.signs[run] = end.state, end.signs
         self.friction[run], self.work[run] = end.friction, end.work
         if end.events:
-            self.eventful[run] = end
+            self.events[run] = end.events
             self._maps.prepare_modes_of(run)
 
 

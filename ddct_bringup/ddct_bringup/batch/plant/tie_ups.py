@@ -12,10 +12,9 @@ from ddct_bringup.batch.stacks import product
 from ddct_plant.friction.engagements import OFF_GOING, ON_COMING, EngagedGears
 from ddct_plant.friction.tie_up import TieUp
 from ddct_plant.hybrid.friction_system import Signs
-from ddct_plant.hybrid.interval_map import Interval, IntervalMap
+from ddct_plant.hybrid.interval_map import Event, Interval, IntervalMap
 
 _CLUTCHES = ON_COMING, OFF_GOING
-_NO_EVENT = Interval([], (), [], [], [])
 
 
 class TieUps:
@@ -44,21 +43,20 @@ class TieUps:
         state: np.ndarray,
         signs: np.ndarray,
         forcing: StackedForcing,
-        eventful: Mapping[int, Interval],
+        events: Mapping[int, list[Event]],
         running: np.ndarray,
     ) -> np.ndarray:
         """
         Return the works in J, (R,), of a period of the runs of a mask, (R,).
 
-        `state` (R, n) and `signs` (R, N) are those at its start, `eventful` are the periods of the
-        runs that have an event in it.
+        `state` (R, n) and `signs` (R, N) are those at its start, `events` those in it.
         """
         work = np.zeros(len(state))
         pressed = running & self._pressed(ON_COMING, forcing) & self._pressed(OFF_GOING, forcing)
         if not pressed.any():
             return work
         alone = np.zeros(len(state), dtype=bool)
-        alone[list(eventful)] = True
+        alone[list(events)] = True
         alone &= pressed
         for mode, runs in by_mode(signs, pressed & ~alone):
             values = np.hstack([state, forcing.inputs, forcing.in_force(mode, self._layout)])
@@ -68,7 +66,7 @@ class TieUps:
                 one, other = (self._direction(each, mode, runs, values) for each in _CLUTCHES)
                 alone[runs] = (one * other)[runs] <= 0
         for run in np.flatnonzero(alone).tolist():
-            work[run] = self._alone(run, state, signs, forcing, eventful.get(run, _NO_EVENT))
+            work[run] = self._alone(run, state, signs, forcing, events.get(run, []))
         return work
 
     def _pressed(self, clutch: int, forcing: StackedForcing) -> np.ndarray:
@@ -106,8 +104,9 @@ class TieUps:
         state: np.ndarray,
         signs: np.ndarray,
         forcing: StackedForcing,
-        after: Interval,
+        events: list[Event],
     ) -> float:
         before = Interval(state[run].tolist(), tuple(signs[run].tolist()), [], [], [])
+        after = Interval([], (), events, [], [])
         inputs, kinetic, static = (each[run].tolist() for each in forcing)
         return self._tie_ups[id(self._engaged[run])].work(before, after, inputs, kinetic, static)
