@@ -17,7 +17,7 @@ async function drawCharts({document: json, roots}) {
   return views;
 }
 
-// Paper gets light copies of the charts, and the tables that a screen folds away.
+// Paper gets light copies of the charts.
 function printCharts(views) {
   const WIDTH_PX = 500;
   const DENSITY = 2;
@@ -28,9 +28,7 @@ function printCharts(views) {
   function place(view) { return view.el.closest('.chart'); }
 
   addEventListener('beforeprint', async () => {
-    const folded = [...document.querySelectorAll('details.paper-too:not([open])')];
-    before ??= {theme: colours.theme(), folded};
-    folded.forEach((part) => { part.open = true; });
+    before ??= colours.theme();
     colours.set('light');
     views.forEach((view) => {
       place(view).style.width = `${WIDTH_PX}px`;
@@ -50,8 +48,7 @@ function printCharts(views) {
   addEventListener('afterprint', () => {
     document.querySelectorAll('.paper').forEach((paper) => paper.replaceChildren());
     views.forEach((view) => { place(view).style.width = ''; });
-    before?.folded.forEach((part) => { part.open = false; });
-    colours.set(before?.theme ?? 'auto');
+    colours.set(before ?? 'auto');
     before = null;
   });
 }

@@ -2,9 +2,6 @@
  * SPDX-License-Identifier: Apache-2.0 */
 'use strict';
 
-// Paper has what a screen folds away.
-addEventListener('beforeprint', () => document.querySelectorAll('details').forEach((each) => { each.open = true; }));
-
 // Draws the charts of a document; `drawn` tells scripts of charts with controls their views by place.
 (async () => {
   const data = JSON.parse(document.getElementById('data').textContent);

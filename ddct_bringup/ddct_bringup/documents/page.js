@@ -54,6 +54,8 @@ const colours = (() => {
     const descending = heading.getAttribute('aria-sort') === 'ascending';
     heading.closest('thead').querySelectorAll('th').forEach((other) => other.removeAttribute('aria-sort'));
     heading.setAttribute('aria-sort', descending ? 'descending' : 'ascending');
+    // Lines between blocks belong to the first order only.
+    body.querySelectorAll('.next').forEach((row) => row.classList.remove('next'));
     const rows = [...body.rows].sort((a, b) => compare(sortKey(a, column), sortKey(b, column)));
     body.append(...(descending ? rows.reverse() : rows));
   }
@@ -66,6 +68,19 @@ const colours = (() => {
       event.preventDefault();
       sort(button);
     });
+  });
+})();
+
+(() => {
+  let unfolded = [];
+  addEventListener('beforeprint', () => {
+    const folded = [...document.querySelectorAll('details.paper-too:not([open])')];
+    folded.forEach((part) => { part.open = true; });
+    unfolded.push(...folded);
+  });
+  addEventListener('afterprint', () => {
+    unfolded.forEach((part) => { part.open = false; });
+    unfolded = [];
   });
 })();
 

@@ -93,7 +93,7 @@ def test_the_page_has_every_number_and_reason_and_escapes_what_it_shows() -> Non
     assert '&lt;pi&gt;</span>' in page
     assert 'aria-label="times"' in page
     assert '<th scope="colgroup" colspan="2" class="of">held out</th>' in page
-    assert '<details><summary>More</summary>' in page
+    assert '<details class="paper-too"><summary>More</summary>' in page
     assert '<code>ddct run --x &#34;a b&#34;</code>' in page
 
 
