@@ -10,6 +10,7 @@ from ddct_bringup.documents.palette import LineLook, looks
 from ddct_bringup.evaluation.grouped_rows import Group, GroupedRows
 from ddct_bringup.metrics.catalogue import FIGURES, TABLE_5_1
 from ddct_bringup.verdict.state import ENGAGED, INVALID
+from ddct_plant.base.errors import DdctError
 from ddct_plant.program.table import Quantity
 
 _ACROSS = 3
@@ -23,8 +24,11 @@ def distributions_chart(results: GroupedRows, scenario: str) -> Chart:
 
     A curve is the share of the valid runs that engaged with at most this value. It ends at the
     share of the runs that engaged and have a value; the rest up to 1 failed, or has no value.
+    Raise DdctError where there is nothing to draw.
     """
-    metrics = [each for each in (*TABLE_5_1, *FIGURES) if each in results.quantities]
+    if why := nothing_drawn(results):
+        raise DdctError(f'{why}: nothing to draw')
+    metrics = _metrics(results)
     found = looks(len(results.groups))
     panels = tuple(
         Panel(
@@ -38,6 +42,17 @@ def distributions_chart(results: GroupedRows, scenario: str) -> Chart:
         for quantity in metrics
     )
     return Chart(_title(results, scenario), panels, _conditions(results), _ACROSS, same_y=True)
+
+
+def nothing_drawn(results: GroupedRows) -> str:
+    """Return why there is nothing to draw, empty where there is something."""
+    if (results.outcomes == INVALID).all():
+        return 'no run is valid'
+    return '' if _metrics(results) else 'no run has a value of a main metric'
+
+
+def _metrics(results: GroupedRows) -> list[Quantity]:
+    return [each for each in (*TABLE_5_1, *FIGURES) if each in results.quantities]
 
 
 def _title(results: GroupedRows, scenario: str) -> str:

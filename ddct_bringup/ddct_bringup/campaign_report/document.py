@@ -9,7 +9,7 @@ from typing import TypeVar
 
 from ddct_bringup.campaign.keys import SCENARIO
 from ddct_bringup.campaign_report import texts
-from ddct_bringup.campaign_report.distributions_chart import distributions_chart
+from ddct_bringup.campaign_report.distributions_chart import distributions_chart, nothing_drawn
 from ddct_bringup.campaign_report.maps import campaign_maps
 from ddct_bringup.campaign_report.maps_figure import maps_drawing
 from ddct_bringup.campaign_report.tables import (
@@ -107,14 +107,14 @@ def _lead(summary: Summary) -> str:
 
 
 def _invalid(summary: Summary) -> Remarks:
-    invalid = sum(group.invalid for group in summary.groups)
     lines = [
         f'{group.label}, {found.runs} {"run" if found.runs == 1 else "runs"}, such as run '
         f'{found.index}: {found.reason}'
         for group in summary.groups
         for found in group.reasons
     ]
-    title = f'{invalid} of {summary.runs} runs {"is" if invalid == 1 else "are"} invalid'
+    verb = 'is' if summary.invalid == 1 else 'are'
+    title = f'{summary.invalid} of {summary.runs} runs {verb} invalid'
     return Remarks(title, lines, alarming=True)
 
 
@@ -310,28 +310,31 @@ def _differences(summary: Summary) -> Section:
 
 
 def _charts(page: PageParts, replay: str) -> Iterator[Section]:
+    why = nothing_drawn(page.rows)
     yield Section(
-        'Distributions',
-        [
-            Note(
-                'Each curve is the share of the valid runs that engaged with at most this value. '
-                'It ends at the share of the runs that engaged and have a value.'
-            ),
-            Figure(
-                '',
-                partial(distributions_chart, page.rows, page.facts[SCENARIO]),
-                'Distributions of the main metrics by controller; the table below has P5, P50 '
-                'and P95',
-            ),
-        ],
-        key='spread',
+        'Distributions', [Note(f'Nothing to draw: {why}.')] if why else _curves(page), key='spread'
     )
     maps = campaign_maps(page.rows)
-    drawn: Block = Note('No number was varied, so there is nothing to draw a map over.')
+    why = 'No run has a value' if page.rows.numbers else 'No number was varied'
+    drawn: Block = Note(f'{why}, so there is no map.')
     if maps:
         words = 'Maps of each controller over two varied numbers, on the page of the campaign'
         drawn = Figure('', partial(maps_drawing, maps, replay), words)
     yield Section('Maps', [drawn], key='maps')
+
+
+def _curves(page: PageParts) -> list[Block]:
+    return [
+        Note(
+            'Each curve is the share of the valid runs that engaged with at most this value. '
+            'It ends at the share of the runs that engaged and have a value.'
+        ),
+        Figure(
+            '',
+            partial(distributions_chart, page.rows, page.facts[SCENARIO]),
+            'Distributions of the main metrics by controller; the table below has P5, P50 and P95',
+        ),
+    ]
 
 
 def _origin(facts: Mapping[str, str]) -> Section:

@@ -34,7 +34,7 @@ _DIGITS, _PLACE_DIGITS = 4, 9
 
 def campaign_maps(results: GroupedRows) -> CampaignMaps | None:
     """
-    Return the maps of the page as JSON content; None where no number was varied.
+    Return the maps of the page as JSON content; None where no number was varied or measured.
 
     A map has two varied numbers as axes, or one. On a grid it has cells, each with the worst of
     the runs that differ only at random; for random samples it has a point per run. The points of
@@ -42,7 +42,7 @@ def campaign_maps(results: GroupedRows) -> CampaignMaps | None:
     of the grid are at their start.
     """
     numbers = results.numbers
-    if not numbers:
+    if not (numbers and results.quantities):
         return None
     pairs = [[*pair] for pair in combinations(numbers, 2)][:MOST_MAPS] or [numbers]
     cells = [_cells(results, keys) for keys in pairs if _on_grid(results, keys)]

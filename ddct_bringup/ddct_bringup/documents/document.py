@@ -245,7 +245,7 @@ def _titled(title: str, parts: Mapping[str, _Part]) -> _Part:
 
 
 def given(*blocks: Block | None) -> list[Block]:
-    """Return the blocks that are there: tables with rows, sections with content."""
+    """Return the blocks that are there: tables with rows, sections with content, and so on."""
     return [each for each in blocks if each is not None and not _is_empty(each)]
 
 
@@ -256,4 +256,6 @@ def _is_empty(block: Block) -> bool:
         return not block.content
     if isinstance(block, Remarks):
         return not block.lines
+    if isinstance(block, Terms):
+        return not block.entries
     return False

@@ -79,6 +79,8 @@ def causes_of(values: Mapping[str, np.ndarray], failed: np.ndarray) -> Causes:
 
 def too_few(failed: np.ndarray) -> str:
     """Return why (n,) failures are too few for an attribution, empty if they are enough."""
+    if not len(failed):
+        return 'no valid run, so nothing says which keys drive failure'
     failures, others = int(np.sum(failed)), int(np.sum(~failed))
     if min(failures, others) >= FEWEST:
         return ''

@@ -128,6 +128,11 @@ class Summary:
     groups: tuple[GroupSummary, ...]
     pairs: tuple[PairSummary, ...]
 
+    @property
+    def invalid(self) -> int:
+        """Number of invalid runs."""
+        return sum(group.invalid for group in self.groups)
+
     def group(self, controller: str) -> GroupSummary:
         """Return the first group of a controller; raise StopIteration without one."""
         return next(each for each in self.groups if each.controller == controller)

@@ -10,7 +10,7 @@ from pathlib import Path
 from ddct_bringup.api import shell
 from ddct_bringup.programs import campaign_folder
 from ddct_bringup.programs.options.of_runs import add_limits_option, add_workers_option
-from ddct_plant.program.command_line import ProgramParser, run_program
+from ddct_plant.program.command_line import ProgramParser, complain, run_program
 from ddct_plant.program.signals import stop_signals
 
 PROGRAM = 'ddct campaign'
@@ -27,8 +27,8 @@ examples:
 
 Prints what came out, and writes it as DIR/report.html and DIR/summary.json, beside
 DIR/results.parquet, a row per run, and DIR/manifest.json. Shards of it are written while it runs;
-after an interruption --resume computes what is missing, with the same result. SPEC.yaml is
-described in docs/use/campaigns.md.
+after an interruption --resume computes what is missing, with the same result. The exit code is 1
+where every run is invalid. SPEC.yaml is described in docs/use/campaigns.md.
 """
 
 
@@ -63,7 +63,12 @@ def _campaign(argv: list[str]) -> int:
     shell.print_campaign(done.summary, options.out)
     print(done.rows)
     print(done.page, flush=True)
-    return 0
+    summary = done.summary
+    if summary.invalid < summary.runs:
+        return 0
+    found = summary.groups[0].reasons[0]
+    complain(PROGRAM, f'every run is invalid, such as run {found.index}: {found.reason}')
+    return 1
 
 
 def _parser() -> argparse.ArgumentParser:

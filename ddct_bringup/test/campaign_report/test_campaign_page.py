@@ -12,6 +12,9 @@ from made_campaign import GRID, make_campaign
 from made_results import made_results
 from samples import sampled
 
+from ddct_bringup.api.shell import campaigns
+from ddct_bringup.campaign.conduct import RESULTS
+from ddct_bringup.campaign.rows import METRIC_COLUMNS
 from ddct_bringup.campaign_report.document import PageParts, campaign_document
 from ddct_bringup.campaign_report.folder import (
     PAGE,
@@ -22,6 +25,7 @@ from ddct_bringup.documents.bokeh_charts import library
 from ddct_bringup.documents.page import html_page
 from ddct_bringup.evaluation.summarise import summary_of
 from ddct_bringup.evaluation.summary import SummaryFile
+from ddct_bringup.programs.campaign import main
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_plant.files.json_records import json_text, read_json
 
@@ -176,3 +180,43 @@ def test_one_run_is_enough_for_a_page(tmp_path: Path, state: str) -> None:
     summary = write_campaign_page(made)
     assert summary.groups[0].runs == 1
     assert 'No number was varied' in (made / PAGE).read_text(encoding='utf-8')
+
+
+@pytest.fixture(scope='module')
+def broken(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a campaign in which every run is invalid."""
+    cells = dict.fromkeys(METRIC_COLUMNS) | {'reason': 'it broke'}
+    folder = tmp_path_factory.mktemp('campaigns') / 'broken'
+    return make_campaign(folder, GRID, lambda run: INVALID, **cells)
+
+
+def test_the_page_of_invalid_runs_alone_says_that_there_is_nothing_to_draw(broken: Path) -> None:
+    write_campaign_page(broken)
+    page = Elements((broken / PAGE).read_text(encoding='utf-8'))
+    assert '12 of 12 runs are invalid' in page.text
+    assert 'Nothing to draw: no run is valid.' in page.text
+    assert 'No run has a value, so there is no map.' in page.text
+    assert not any('maps' in script for script in page.scripts)
+
+
+@pytest.mark.parametrize('name', ['wear.png', 'wear.html'])
+def test_a_figure_of_invalid_runs_alone_is_refused_in_one_line(
+    broken: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str
+) -> None:
+    assert main(['show', str(broken), '--figure', str(tmp_path / name)]) == 1
+    assert capsys.readouterr().err == 'ddct campaign: no run is valid: nothing to draw\n'
+    assert not (tmp_path / name).exists()
+
+
+def test_a_campaign_of_invalid_runs_alone_ends_with_exit_code_1_and_its_results(
+    broken: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setattr(campaigns, 'carry_out', lambda *given, **options: broken / RESULTS)
+    (tmp_path / 'spec.yaml').write_text(json.dumps(GRID), encoding='utf-8')
+    assert main([str(tmp_path / 'spec.yaml'), '--out', str(broken)]) == 1
+    printed = capsys.readouterr()
+    assert printed.out.splitlines()[-1] == str(broken / PAGE)
+    assert printed.err == 'ddct campaign: every run is invalid, such as run 0: it broke\n'

@@ -55,6 +55,11 @@ def test_two_failed_runs_are_too_few():
     assert found['too_few'].startswith('2 of 400 valid runs failed: too few to say')
 
 
+def test_without_a_valid_run_nothing_is_counted():
+    found = attribution(drawn(2), np.zeros(RUNS, dtype=bool), rows=range(RUNS))
+    assert (found['keys'], found['too_few'][:12]) == ([], 'no valid run')
+
+
 @pytest.mark.parametrize('failures', [FEWEST - 1, FEWEST])
 def test_too_few_runs_that_did_not_fail_give_no_attribution(failures):
     failed = np.arange(RUNS) < failures
