@@ -88,6 +88,8 @@ def test_the_page_judges_by_the_limits_that_are_given(demo: Path, tmp_path: Path
     mine.write_text(f'{rules}limits:\n{limit}, reason: as agreed}}\n', encoding='utf-8')
     assert main([str(demo / 'pi'), *NO_FLOORS, '--limits', str(mine), '--out', str(out)]) == 0
     shown = read(out).text
+    assert re.search(r'\blimit\s*7 convention', shown)
+    assert 'as agreed' in shown
     assert f'Judged by the limits mine.yaml {load_limits(mine).origin["digest"]}' in shown
     assert 'convention' in shown
     assert '▲ beyond its limit' in shown

@@ -30,7 +30,7 @@ from ddct_bringup.report.run_labels import common_conditions
 from ddct_bringup.report.run_tables import TICKS, time_place
 from ddct_bringup.report.score_tables import (
     figure_columns,
-    limit_rows,
+    limit_columns,
     other_columns,
     table_5_1_columns,
 )
@@ -80,7 +80,7 @@ def report_page(
     settings = recordings[0].settings
     shift = any(run.scores.is_shift for run in runs)
     table_5_1, figures = table_5_1_columns(runs, thesis_rows), figure_columns(runs)
-    further, limits_shown = other_columns(runs, table_5_1), limit_rows(runs)
+    further, limits_shown = other_columns(runs, table_5_1), limit_columns(runs)
     loops = loop_rows(evidence)
     parts = ShownParts(
         quantities,
@@ -90,7 +90,7 @@ def report_page(
         thesis=any(thesis_rows),
         shift=shift,
         limits=bool(limits_shown),
-        beyond=any(cell.beyond for row in limits_shown for cell in row.cells),
+        beyond=any(cell.beyond for column in limits_shown for cell in column.cells),
         yardstick=any(cell.yardstick for column in figures for cell in column.cells),
         loops=bool(loops),
         times=any(run.times for run in shown),
@@ -105,7 +105,7 @@ def report_page(
         definitions=definitions(parts),
         lanes=LANES if LANES in drawn else None,
         phases=OPACITY,
-        limit_rows=limits_shown,
+        limit_columns=limits_shown,
         limits=limits.origin,
         pareto=pareto,
         floor_front=front,

@@ -168,8 +168,8 @@ class LimitCell:
 
 
 @dataclass(frozen=True)
-class LimitRow:
-    """One limited metric for all runs."""
+class LimitColumn:
+    """One metric that has a limit, for all runs."""
 
     metric: Quantity
     limit: str
@@ -181,16 +181,16 @@ class LimitRow:
     """Reasons why valid runs have no value, empty where all have one."""
 
 
-def limit_rows(runs: Sequence[ScoredRecording]) -> list[LimitRow]:
-    """Return a row for each metric that has a limit, in the order of `scores.json`."""
+def limit_columns(runs: Sequence[ScoredRecording]) -> list[LimitColumn]:
+    """Return a column for each metric that has a limit, in the order of `scores.json`."""
     # All runs of a page have one scenario, so one limit applies to all; a log has no traction.
     found = {each.name: each for run in runs for each in run.scores.limits}
-    return [_limit_row(found[key], runs) for key in METRICS if key in found]
+    return [_limit_column(found[key], runs) for key in METRICS if key in found]
 
 
-def _limit_row(limit: LimitResult, runs: Sequence[ScoredRecording]) -> LimitRow:
+def _limit_column(limit: LimitResult, runs: Sequence[ScoredRecording]) -> LimitColumn:
     cells = [_limit_cell(limit, run) for run in runs]
-    return LimitRow(
+    return LimitColumn(
         metric=METRICS[limit.name],
         limit=value_text(limit.limit),
         source=limit.source,

@@ -12,7 +12,7 @@ from ddct_bringup.report.pareto import DEFAULT_PAIR, pair_key, pareto_view
 from ddct_bringup.report.score_tables import (
     MetricColumn,
     figure_columns,
-    limit_rows,
+    limit_columns,
     other_columns,
     table_5_1_columns,
 )
@@ -95,29 +95,29 @@ def limited(value: float | None, **given):
 
 
 def test_a_value_beyond_its_limit_is_marked_and_the_limit_has_its_source():
-    (row,) = limit_rows([FAILED, limited(0.9), limited(0.3), limited(None), limited(0.315)])
-    assert row.metric.key == 'weighted_acceleration_m_s2'
-    assert [cell.beyond for cell in row.cells] == [False, True, False, False, False]
-    assert [cell.text for cell in row.cells] == ['–', '0.9', '0.3', '–', '0.315']
-    why = [cell.why_dash for cell in row.cells]
+    (column,) = limit_columns([FAILED, limited(0.9), limited(0.3), limited(None), limited(0.315)])
+    assert column.metric.key == 'weighted_acceleration_m_s2'
+    assert [cell.beyond for cell in column.cells] == [False, True, False, False, False]
+    assert [cell.text for cell in column.cells] == ['–', '0.9', '0.3', '–', '0.315']
+    why = [cell.why_dash for cell in column.cells]
     assert why == ['the run has no scores', '', '', 'the run is short', '']
-    assert (row.limit, row.source, row.convention) == ('0.315', 'A, 1', False)
-    assert row.reasons == 'the run is short'
-    assert unit_text(row.metric.unit) == 'm/s²'
+    assert (column.limit, column.source, column.convention) == ('0.315', 'A, 1', False)
+    assert column.reasons == 'the run is short'
+    assert unit_text(column.metric.unit) == 'm/s²'
 
 
 def test_the_magnitude_of_a_negative_value_is_compared_with_its_limit():
     key = 'mean_negative_jerk_m_s3'
     made = [run(**{key: value}, limits=(made_limit(key, value, 5.0),)) for value in (-6.0, -4.0)]
-    (row,) = limit_rows(made)
-    assert [cell.beyond for cell in row.cells] == [True, False]
+    (column,) = limit_columns(made)
+    assert [cell.beyond for cell in column.cells] == [True, False]
 
 
-def test_limits_are_in_the_order_of_the_metrics_and_a_metric_without_one_has_no_row():
+def test_limits_are_in_the_order_of_the_metrics_and_a_metric_without_one_has_no_column():
     limits = (made_limit('judder_rpm', 1.0, 6.0, convention=True), made_limit('releases', 0, 0))
-    rows = limit_rows([FAILED, run(judder_rpm=1.0, releases=0, limits=limits)])
-    assert [row.metric.key for row in rows] == ['releases', 'judder_rpm']
-    assert [row.convention for row in rows] == [False, True]
+    columns = limit_columns([FAILED, run(judder_rpm=1.0, releases=0, limits=limits)])
+    assert [column.metric.key for column in columns] == ['releases', 'judder_rpm']
+    assert [column.convention for column in columns] == [False, True]
 
 
 def test_large_values_keep_every_digit_before_the_point():
