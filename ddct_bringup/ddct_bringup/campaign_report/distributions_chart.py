@@ -4,11 +4,11 @@
 
 import numpy as np
 
+from ddct_bringup.campaign_report.tables import MAIN
 from ddct_bringup.documents.chart import Chart, ChartAxis, Line, Panel
 from ddct_bringup.documents.page_parts import unit_text
 from ddct_bringup.documents.palette import LineLook, looks
 from ddct_bringup.evaluation.grouped_rows import Group, GroupedRows
-from ddct_bringup.metrics.catalogue import FIGURES, TABLE_5_1
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program.table import Quantity
@@ -52,7 +52,8 @@ def nothing_drawn(results: GroupedRows) -> str:
 
 
 def _metrics(results: GroupedRows) -> list[Quantity]:
-    return [each for each in (*TABLE_5_1, *FIGURES) if each in results.quantities]
+    there = {each.key: each for each in results.quantities}
+    return [there[key] for key in MAIN if key in there]
 
 
 def _title(results: GroupedRows, scenario: str) -> str:

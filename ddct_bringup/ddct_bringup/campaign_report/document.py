@@ -14,6 +14,7 @@ from ddct_bringup.campaign_report.maps import campaign_maps
 from ddct_bringup.campaign_report.maps_figure import maps_drawing
 from ddct_bringup.campaign_report.tables import (
     EFFECT_COLUMNS,
+    MAIN,
     NO_VALUE,
     differences_table,
     effect_cells,
@@ -40,18 +41,14 @@ from ddct_bringup.documents.document import (
 )
 from ddct_bringup.documents.page_parts import value_text
 from ddct_bringup.evaluation.boundaries import Boundary, BoundarySide
-from ddct_bringup.evaluation.case_figures import RESPONSE
 from ddct_bringup.evaluation.grouped_rows import GroupedRows
 from ddct_bringup.evaluation.quantities import QUANTITIES
 from ddct_bringup.evaluation.spread import QuantitySummary, RunValue
 from ddct_bringup.evaluation.summary import GroupSummary, Summary
-from ddct_bringup.metrics.catalogue import FIGURES, TABLE_5_1
 from ddct_bringup.verdict.state import ENGAGED
 from ddct_plant.program.command_line import package_version
 from ddct_plant.program.table import Weight
 
-MAIN = tuple(each.key for each in (RESPONSE, *FIGURES, *TABLE_5_1))
-"""Response, figures and metrics of Table 5.1, which are shown first."""
 _NAME = Weight.IDENTIFYING
 Entry = TypeVar('Entry')
 
@@ -92,6 +89,7 @@ def campaign_document(summary: Summary, replay: str, page: PageParts | None = No
             _differences(summary),
             _origin(page.facts) if page else None,
         ),
+        complete='campaign show --json FILE',
     )
 
 
@@ -197,11 +195,11 @@ def _keys(summary: Summary) -> Section:
     causes = [(group.label, group.causes) for group in summary.groups if group.causes]
     rows = [(label, *effect_cells(found)) for label, each in causes for found in each.keys]
     columns = [Column('controller', number=False, weight=_NAME), *EFFECT_COLUMNS]
-    if not causes:
+    if not rows:
         return Section('', [])
     return Section(
         'Which keys drive failure',
-        given(
+        [
             Note(
                 'Runs that vary at random have no boundary of one key: what else was drawn '
                 'differs from run to run. The table has what each key explains of failure by '
@@ -210,7 +208,7 @@ def _keys(summary: Summary) -> Section:
             ),
             Table('', columns, rows),
             texts.terms('explained', 'drives', 'most failures'),
-        ),
+        ],
         key='keys',
         short='Which keys',
     )
@@ -221,10 +219,13 @@ def _badly(summary: Summary, replay: str) -> Section:
     return Section(
         'How bad it becomes',
         given(
-            _quantities(summary, MAIN, replay),
+            _quantities(summary, MAIN, 'Engaged runs', replay),
             Section(
                 'Further metrics',
-                given(_quantities(summary, further, replay), meanings(further)),
+                given(
+                    _quantities(summary, further, 'Engaged runs, further metrics', replay),
+                    meanings(further),
+                ),
                 folded=True,
             ),
             Note('The bag of a run:', replay.replace('INDEX', 'I')),
@@ -235,7 +236,7 @@ def _badly(summary: Summary, replay: str) -> Section:
     )
 
 
-def _quantities(summary: Summary, keys: Sequence[str], replay: str) -> Table:
+def _quantities(summary: Summary, keys: Sequence[str], what: str, replay: str) -> Table:
     columns = [
         Column('quantity', number=False, weight=_NAME, symbols=True),
         Column('controller', number=False, weight=_NAME),
@@ -255,8 +256,7 @@ def _quantities(summary: Summary, keys: Sequence[str], replay: str) -> Table:
         for group in summary.groups
         if key in group.quantities
     ]
-    title = 'Engaged runs: quantiles with sign, CVaR and worst by magnitude'
-    return Table(title, columns, rows)
+    return Table(f'{what}: quantiles with sign, CVaR and worst by magnitude', columns, rows)
 
 
 def _spread(found: QuantitySummary, key: str, replay: str) -> Row:
@@ -293,14 +293,19 @@ def _differences(summary: Summary) -> Section:
         'Differences on the same cases, where both engaged',
         given(
             differences_table(of_first, MAIN),
-            outcomes_table(of_first),
+            outcomes_table(of_first, 'Cases of these differences'),
             Section(
                 'Between the other controllers',
-                given(differences_table(others, MAIN), outcomes_table(others)),
+                given(
+                    differences_table(others, MAIN),
+                    outcomes_table(others, 'Cases of the differences between the others'),
+                ),
                 folded=True,
             ),
             Section(
-                'Further metrics', given(differences_table(summary.pairs, further)), folded=True
+                'Differences in further metrics',
+                given(differences_table(summary.pairs, further)),
+                folded=True,
             ),
             texts.terms('difference', 'difference interval'),
         ),

@@ -14,13 +14,17 @@ from ddct_bringup.documents.document import (
     Terms,
 )
 from ddct_bringup.evaluation.attribution import Effect
+from ddct_bringup.evaluation.case_figures import RESPONSE
 from ddct_bringup.evaluation.paired import PairedDifference
 from ddct_bringup.evaluation.quantities import QUANTITIES
 from ddct_bringup.evaluation.share import Share
 from ddct_bringup.evaluation.spread import Quantiles
 from ddct_bringup.evaluation.summary import PairSummary
+from ddct_bringup.metrics.catalogue import FIGURES, TABLE_5_1
 from ddct_plant.program.table import Weight
 
+MAIN = tuple(each.key for each in (RESPONSE, *FIGURES, *TABLE_5_1))
+"""Response, figures and metrics of Table 5.1, which are shown first."""
 NO_VALUE = 'no engaged run has a value'
 """Reason of a dash."""
 _NAME = Weight.IDENTIFYING
@@ -110,11 +114,11 @@ def differences_table(pairs: Sequence[PairSummary], keys: Sequence[str]) -> Tabl
     return Table('', columns, rows, notes=['interval: sign test'])
 
 
-def outcomes_table(pairs: Sequence[PairSummary]) -> Table:
+def outcomes_table(pairs: Sequence[PairSummary], title: str) -> Table:
     """Return in how many cases both, one or none of two controllers engaged."""
     columns = [
         Column('controllers', number=False, weight=_NAME),
         Column('both engaged', number=False),
     ]
     rows = [(pair.label, texts.joint_outcomes_text(pair)) for pair in pairs]
-    return Table('Cases of these differences', columns, rows)
+    return Table(title, columns, rows)

@@ -143,18 +143,12 @@ def joint_outcomes_text(pair: PairSummary) -> str:
 
 
 def notes_of(summary: Summary) -> list[str]:
-    """Return notes to be shown next to the tables, a line each."""
-    found = [
-        f'no interval: {reason}'
-        for reason in dict.fromkeys(each.no_interval for each in summary.groups)
-        if reason
-    ]
-    found += [
+    """Return of which groups no keys that drive failure are named, and why, a line each."""
+    return [
         f'{group.label}: {group.causes.too_few}'
         for group in summary.groups
         if group.causes and group.causes.too_few
     ]
-    return found
 
 
 def other_version_lines(other: OtherVersion) -> Iterator[str]:

@@ -70,6 +70,19 @@ def test_a_curve_of_very_many_runs_keeps_its_ends():
     assert curve[-1, 1] == pytest.approx(1.0)
 
 
+def test_the_first_panel_is_that_of_the_response():
+    results = made_results(
+        [ENGAGED] * 2,
+        {'wear_gain': [0.7, 0.8]},
+        {JERK: [4.0, 5.0], 'time_to_final_lock_s': [0.5, 0.6], 'torque_late_s': [0.1, 0.2]},
+    )
+    response, *_ = distributions_chart(results, 'thesis').panels
+    assert response.x.label == 'response, s'
+    (curve,) = response.items
+    assert isinstance(curve, Line)
+    assert curve.x == pytest.approx([0.6, 0.6, 0.8])
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize('highest', [0.0123, 9.9, 123.0, 100_000.0, 123_456.0, 987_654.0])
 def test_tick_labels_of_the_x_axis_do_not_overlap(highest):

@@ -90,6 +90,11 @@ def test_no_line_is_too_wide_and_no_cell_is_cut(name: str, width: int, is_termin
     assert [line for line in lines if '…' in line or '...' in line] == []
 
 
+def test_a_campaign_names_the_option_that_has_all_columns() -> None:
+    lines = ' '.join(' '.join(_shown('campaign', is_terminal=True)).split())
+    assert '; all with campaign show --json FILE' in lines
+
+
 @pytest.mark.process
 @pytest.mark.parametrize('name', PROGRAMS)
 def test_each_dash_has_a_reason_below_its_table(name: str) -> None:
