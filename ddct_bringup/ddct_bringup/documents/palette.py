@@ -58,6 +58,11 @@ def looks(count: int) -> list[LineLook]:
     return list(islice(cycle(_LOOKS), count))
 
 
+def point_mark(position: int) -> str:
+    """Return the shape of points without a line, by the position of their run from 0 on."""
+    return MARKS[position // len(COLOURS) % len(MARKS)]
+
+
 def sample_svg(look: LineLook) -> Markup:
     """Return a sample of the line, 36 by 12 pixels, as an SVG element."""
     dash = f' stroke-dasharray="{" ".join(map(str, look.dash))}"' if look.dash else ''

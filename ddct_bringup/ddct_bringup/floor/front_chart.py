@@ -9,7 +9,7 @@ import numpy as np
 
 from ddct_bringup.documents.chart import Area, Chart, ChartAxis, Item, Line, Marks, Panel
 from ddct_bringup.documents.page_parts import unit_text
-from ddct_bringup.documents.palette import NEUTRAL, LineLook, looks
+from ddct_bringup.documents.palette import NEUTRAL, LineLook, looks, point_mark
 from ddct_bringup.floor.front import ControllerRow
 from ddct_bringup.floor.metric_units import METRICS
 from ddct_bringup.floor.values import Floor
@@ -30,7 +30,10 @@ def front_chart(
     Lock times count from the instant that `counted_from` names.
     """
     names = dict.fromkeys(row.controller for row in rows)
-    looks_by_name = dict(zip(names, looks(len(names)), strict=True))
+    points = {
+        name: _Point(look.colour, point_mark(position))
+        for position, (name, look) in enumerate(zip(names, looks(len(names)), strict=True))
+    }
     across = ChartAxis(f'time from {counted_from} to the lock, s')
     panels = [
         _panel(
@@ -38,11 +41,18 @@ def front_chart(
             across,
             [floor for floor in floors if floor.metric == metric],
             _marks(rows, metric),
-            looks_by_name,
+            points,
         )
         for metric in dict.fromkeys(floor.metric for floor in floors)
     ]
     return Chart(title, tuple(panels), same_x=True)
+
+
+class _Point(NamedTuple):
+    """Look of the points of a controller: colour and shape."""
+
+    colour: str
+    mark: str
 
 
 class _Mark(NamedTuple):
@@ -67,17 +77,15 @@ def _panel(
     across: ChartAxis,
     floors: Sequence[Floor],
     marks: Sequence[_Mark],
-    looks_by_name: dict[str, LineLook],
+    points: dict[str, _Point],
 ) -> Panel:
     """Return the proven least as an edge of what is impossible, the attained values as circles."""
     times = np.array([floor.lock_time_s for floor in floors])
     least = np.array([np.nan if floor.least is None else floor.least for floor in floors])
     attained = np.array([np.nan if f.attained is None else f.attained for f in floors])
-    values = [*least, *attained]
-    top = _HEADROOM * float(np.nanmedian(values)) if np.isfinite(values).any() else 1.0
-    highest = max(
-        [float(np.nanmax(values)), *(min(mark.value, top) for mark in marks)], default=1.0
-    )
+    values = [float(each) for each in (*least, *attained) if np.isfinite(each)]
+    top = _HEADROOM * float(np.median(values)) if values else 1.0
+    highest = max([*values, *(min(mark.value, top) for mark in marks)], default=1.0)
     ceiling = 1.1 * highest if highest > 0.0 else 1.0
     items: list[Item] = [
         Area(times, np.zeros(len(times)), least, 'no run can be here'),
@@ -85,15 +93,14 @@ def _panel(
         Marks(times, attained, NEUTRAL, 'attained by a run', filled=False, size=6.0),
     ]
     for mark in marks:
-        look = looks_by_name[mark.controller]
+        point = points[mark.controller]
         items.append(
             Marks(
                 np.array([mark.lock_time_s]),
                 np.array([min(mark.value, ceiling)]),
-                look.colour,
+                point.colour,
                 mark.controller,
-                look.mark or 'circle',
-                filled=not look.dash,
+                point.mark,
                 size=9.0,
                 hint=f'{mark.controller}: {mark.value:.4g}',
                 whole=True,

@@ -13,7 +13,7 @@ import numpy as np
 
 from ddct_bringup.documents.chart import Area, Chart, ChartAxis, Item, Line, Marks, Panel
 from ddct_bringup.documents.page_parts import value_text
-from ddct_bringup.documents.palette import NEUTRAL, LineLook
+from ddct_bringup.documents.palette import NEUTRAL, LineLook, point_mark
 from ddct_bringup.floor.case import case_at
 from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.dynamics.start import Start
@@ -84,7 +84,7 @@ def _mark(run: PageRun, point: FrontPoint) -> Marks:
         np.array([point.value]),
         run.look.colour,
         run.label,
-        run.look.mark or 'circle',
+        point_mark(run.index),
         filled=point.bound,
         size=10.0,
         hint=f'{run.label}: {value_text(point.value)} m/s³, least {value_text(point.least)} m/s³',

@@ -24,7 +24,7 @@ from ddct_bringup.report.evidence import COMPUTED, LoopEvidence, loop_rows, with
 from ddct_bringup.report.front_view import front_view
 from ddct_bringup.report.page_runs import PageRun, chart_runs, page_runs
 from ddct_bringup.report.pareto import pareto_view
-from ddct_bringup.report.pareto_chart import PARETO, pareto_chart
+from ddct_bringup.report.pareto_chart import PARETO, pareto_chart, pareto_legend
 from ddct_bringup.report.phase_lanes import LANES, OPACITY, SHIFT_OPACITY
 from ddct_bringup.report.run_labels import common_conditions
 from ddct_bringup.report.run_tables import TICKS, time_place
@@ -111,6 +111,7 @@ def report_page(
         floor_front=front,
         front_html=front_html,
         pareto_place=f'chart-{PARETO}',
+        pareto_legend=pareto_legend(shown),
         neutral=NEUTRAL,
         runs=shown,
         table_5_1=table_5_1,

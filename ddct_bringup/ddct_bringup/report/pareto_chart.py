@@ -6,8 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from markupsafe import Markup
+
 from ddct_bringup.documents.bokeh_charts import styled_figure
-from ddct_bringup.documents.palette import NEUTRAL
+from ddct_bringup.documents.palette import NEUTRAL, mark_svg, point_mark
 from ddct_bringup.report.page_runs import PageRun
 from ddct_bringup.report.pareto import ParetoView, pair_key
 from ddct_bringup.verdict.state import ENGAGED
@@ -41,7 +43,7 @@ def pareto_chart(view: ParetoView, runs: Sequence[PageRun]) -> 'figure':
             'label': [run.label for run in valid],
             'state': [run.scores.state.replace('_', ' ') for run in valid],
             'colour': [run.look.colour for run in valid],
-            'mark': ['circle' if run.scores.state == ENGAGED else 'x' for run in valid],
+            'mark': [_mark(run) for run in valid],
         }
     )
     drawn = styled_figure(
@@ -74,3 +76,12 @@ def pareto_chart(view: ParetoView, runs: Sequence[PageRun]) -> 'figure':
         )
     )
     return drawn
+
+
+def pareto_legend(runs: Sequence[PageRun]) -> dict[str, Markup]:
+    """Return the samples of the marks by the labels of their runs."""
+    return {run.label: mark_svg(_mark(run), run.look.colour) for run in runs if run.scores.valid}
+
+
+def _mark(run: PageRun) -> str:
+    return point_mark(run.index) if run.scores.state == ENGAGED else 'x'

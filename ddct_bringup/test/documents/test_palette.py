@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from ddct_bringup.documents.palette import LineLook, looks, sample_svg
+from ddct_bringup.documents.palette import LineLook, looks, point_mark, sample_svg
 from ddct_controllers.design.drawing.line_styles import COLOURS, DASHES
 
 LINEAR_TO_XYZ = np.array(
@@ -82,6 +82,12 @@ def test_the_lines_of_a_page_have_the_first_free_colours_then_dashes_then_marks(
     assert {(look.dash, look.mark) for look in of_page[:5]} == {((), '')}
     assert of_page[5] == LineLook(COLOURS[0], DASHES[1])
     assert of_page[30] == LineLook(COLOURS[0], (), 'circle')
+
+
+def test_no_two_of_20_points_look_alike():
+    points = {(look.colour, point_mark(at)) for at, look in enumerate(looks(20))}
+    assert len(points) == 20
+    assert point_mark(20) == point_mark(0) == 'circle'
 
 
 def test_no_two_of_150_lines_look_alike():
