@@ -5,6 +5,7 @@
 from dataclasses import replace
 from typing import Any
 
+import matplotlib
 import numpy as np
 import pyarrow as pa
 import pytest
@@ -122,6 +123,16 @@ def test_progress_is_the_volume_between_the_front_and_the_worst_values(study: An
     assert isinstance(line, Line)
     # Of (8, 40): 7 x 10, then the part of each further trial that the earlier ones lack.
     np.testing.assert_allclose(line.y, [70.0, 70.0 + 60.0, 130.0 + 40.0, 170.0])
+
+
+def test_progress_keeps_the_backend_of_matplotlib(study: Any) -> None:
+    backend = matplotlib.get_backend()
+    matplotlib.use('svg')
+    try:
+        progress_chart(RESULT, study)
+        assert matplotlib.get_backend() == 'svg'
+    finally:
+        matplotlib.use(backend)
 
 
 def test_progress_of_one_objective_is_its_best_value_so_far(study: Any) -> None:

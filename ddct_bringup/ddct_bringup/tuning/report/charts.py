@@ -142,23 +142,26 @@ def _volumes(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return numbers of trials and hypervolumes, which Optuna gives only as a plotted line."""
     import matplotlib
+    from matplotlib import pyplot
     from optuna.visualization.matplotlib import plot_hypervolume_history
 
-    matplotlib.use('agg')
     worst = [
         (max if goal.sense == MINIMISE else min)(values)
         for goal, values in zip(
             result.objectives, zip(*(each.values for each in kept), strict=True), strict=True
         )
     ]
-    with warnings.catch_warnings():
-        warnings.simplefilter('ignore')  # its plots are experimental
-        axes = plot_hypervolume_history(study, worst)
+    backend = matplotlib.get_backend()
+    matplotlib.use('agg')
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter('ignore')  # its plots are experimental
+            axes = plot_hypervolume_history(study, worst)
+        pyplot.close(axes.figure)  # type: ignore[arg-type]
+    finally:
+        matplotlib.use(backend)
     (line,) = axes.get_lines()
     numbers, volumes = (np.asarray(each, float) for each in (line.get_xdata(), line.get_ydata()))
-    from matplotlib import pyplot
-
-    pyplot.close(axes.figure)  # type: ignore[arg-type]
     return numbers, volumes
 
 
