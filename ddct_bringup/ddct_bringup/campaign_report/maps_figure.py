@@ -62,7 +62,7 @@ def _map_figure() -> 'figure':
         'hatch_color': NEUTRAL,
     }
     look |= {'line_color': NEUTRAL, 'hatch_scale': 12.0, 'selection_line_width': 3}
-    look |= {'nonselection_alpha': 1.0, 'nonselection_hatch_alpha': 1.0, 'line_width': 0.5}
+    look |= {'nonselection_alpha': 1.0, 'nonselection_hatch_alpha': 1.0}
     cells = drawn.rect(
         'x',
         'y',
@@ -70,6 +70,7 @@ def _map_figure() -> 'figure':
         'height',
         source=ColumnDataSource({name: [] for name in _SHAPES}),
         name='cells',
+        line_width=0.5,
         **look,
     )
     points = drawn.scatter(
@@ -79,6 +80,7 @@ def _map_figure() -> 'figure':
         marker='mark',
         source=ColumnDataSource({name: [] for name in _SHAPES}),
         name='points',
+        line_width=1.5,  # the darkest and the lightest ones show on any page by their edge
         **look,
     )
     words: dict[str, Any] = {'background_fill_color': 'ground', 'padding': 2}
