@@ -91,8 +91,11 @@ def matplotlib_figure(chart: Chart) -> 'Figure':
         )
         for each, panel in zip(axes.flat, chart.panels, strict=False):
             _draw_panel(each, panel)
-            if chart.same_x or chart.same_y:
-                each.label_outer()
+            place = each.get_subplotspec()
+            if chart.same_x and not place.is_last_row():
+                each.set_xlabel('')
+            if chart.same_y and not place.is_first_col():
+                each.set_ylabel('')
             if chart.columns > 1 and not (panel.x.logarithmic or panel.x.ticks):
                 each.locator_params(axis='x', nbins=_MOST_TICKS - 1)
         for each in axes.flat[len(chart.panels) :]:

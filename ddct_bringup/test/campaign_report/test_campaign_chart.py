@@ -83,6 +83,20 @@ def test_the_first_panel_is_that_of_the_response():
     assert curve.x == pytest.approx([0.6, 0.6, 0.8])
 
 
+def test_each_panel_of_a_file_names_its_metric_and_has_numbers_below():
+    metrics = ['time_to_final_lock_s', 'torque_late_s', JERK, 'friction_work_j']
+    results = made_results(
+        [ENGAGED] * 2, {'wear_gain': [0.7, 0.8]}, {key: [4.0, 5.0] for key in metrics}
+    )
+    figure = matplotlib_figure(distributions_chart(results, 'thesis'))
+    drawn = figure.axes[:5]
+    labels = [axes.get_xlabel() for axes in drawn]
+    assert all(labels)
+    assert len({*labels}) == 5
+    assert all(axes.xaxis.get_tick_params()['labelbottom'] for axes in drawn)
+    assert [bool(axes.get_ylabel()) for axes in drawn] == [True, False, False, True, False]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize('highest', [0.0123, 9.9, 123.0, 100_000.0, 123_456.0, 987_654.0])
 def test_tick_labels_of_the_x_axis_do_not_overlap(highest):
