@@ -349,6 +349,22 @@ def test_a_shard_without_its_digest_is_computed_again(whole: Path, tmp_path: Pat
     assert sorted(workers.computed) == list(range(CASES))
 
 
+@pytest.mark.slow
+def test_a_shard_that_is_altered_while_the_campaign_goes_on_is_not_merged(
+    tmp_path: Path, use
+) -> None:
+    out = tmp_path / 'out'
+
+    def alter(first: int) -> None:
+        if first == CASES - 1:
+            flip(min((out / SHARDS).iterdir()), 300)
+
+    use(OneByOne(alter))
+    with pytest.raises(DdctError, match='its bytes are not those that were written'):
+        carried_out(out)
+    assert not (out / RESULTS).exists()
+
+
 def test_a_manifest_that_was_edited_is_not_resumed(whole: Path, tmp_path: Path) -> None:
     out = shutil.copytree(whole, tmp_path / 'out')
     file = out / MANIFEST

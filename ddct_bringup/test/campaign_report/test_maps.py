@@ -9,6 +9,7 @@ import pytest
 from made_results import made_results
 
 from ddct_bringup.campaign_report.maps import MOST_POINTS, campaign_maps
+from ddct_bringup.campaign_report.maps_figure import maps_drawing
 from ddct_bringup.evaluation.grouped_rows import GroupedRows
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_plant.files.json_records import to_json
@@ -35,6 +36,17 @@ def test_every_cell_of_the_grid_is_there_with_its_state_value_and_index():
     assert panel['values'][JERK] == [4.0, 90.0, None, -6.0]
     assert drawn['extent'] == 'all 4 runs'
     assert panel['index'] == [0, 1, 2, 3]
+
+
+@pytest.mark.slow
+def test_cells_and_points_of_a_map_have_a_text_at_the_pointer_and_can_be_tapped():
+    maps = campaign_maps(made_results([ENGAGED] * 2, {WEAR: [0.8, 1.0]}, {JERK: [4.0, 7.0]}))
+    assert maps is not None
+    (drawn,) = maps_drawing(maps, 'replay INDEX').figures.values()
+    tools = {type(tool).__name__: tool for tool in drawn.toolbar.tools}
+    for name in ('HoverTool', 'TapTool'):
+        assert [shape.name for shape in tools[name].renderers] == ['cells', 'points']
+    assert tools['HoverTool'].tooltips == [('', '@text')]
 
 
 def test_the_scale_is_one_for_all_controllers_and_that_of_engaged_runs():

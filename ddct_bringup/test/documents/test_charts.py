@@ -102,7 +102,14 @@ def test_a_logarithmic_axis_and_a_title_come_on_the_figure():
     )
     (drawn,) = draw_chart(Chart('gains', (panel,)))
     assert type(drawn.x_scale).__name__ == 'LogScale'
+    assert type(drawn.y_scale).__name__ == 'LinearScale'
     assert drawn.title.text == 'pi'  # type: ignore[union-attr]
+    upright = Panel(
+        (Line(TIMES, TIMES + 1.0, FIRST, 'pi'),), y=ChartAxis('jerk', logarithmic=True)
+    )
+    (drawn,) = draw_chart(Chart('jerks', (upright,)))
+    assert type(drawn.x_scale).__name__ == 'LinearScale'
+    assert type(drawn.y_scale).__name__ == 'LogScale'
 
 
 @pytest.mark.filterwarnings('error')

@@ -60,6 +60,11 @@ def test_the_best_is_the_same_when_an_objective_has_another_origin() -> None:
         assert best_of(front, SPEC).number == 5
 
 
+@pytest.mark.filterwarnings('error')
+def test_the_best_of_equal_trials_is_the_first() -> None:
+    assert best_of([trial(5, 1.0, 2.0), trial(4, 1.0, 2.0)], SPEC).number == 4
+
+
 @pytest.mark.parametrize(
     ('trials', 'words'),
     [

@@ -83,10 +83,10 @@ def test_the_chart_of_every_controller_is_a_picture_of_less_than_150_kb():
 
 
 def range_of_panels(*states: str) -> tuple[float, float]:
-    """Return the range in rpm of slips from -20 to 80 rpm, of which others grow without limit."""
+    """Return the range in rpm of slips in -20 to 80 rpm, of which others grow without limit."""
     good, bad = np.array([80.0, 20.0, -20.0]), np.array([80.0, 1e4, 1e6])
     slips = [
-        Slip('pi', f'{place}', state, 1, good if state == 'engaged' else bad)
+        Slip('pi', f'{place}', state, 1, good / (1 + place) if state == 'engaged' else bad)
         for place, state in enumerate(states)
     ]
     return engagement_chart('Drawn', slips).axes[0].get_ylim()
