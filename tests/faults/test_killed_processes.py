@@ -18,10 +18,10 @@ from support.shared_memory import has_owner, segments_of
 from waiting import wait_until
 
 from ddct_bringup.bag.reader import read_bag
-from ddct_bringup.processes.shared_memory import SHARED_MEMORY
 from ddct_bringup.programs import score
 from ddct_bringup.run.execution import execute
 from ddct_plant.graph.domain import own_domain
+from ddct_plant.graph.half_made_ports import SHARED_MEMORY
 
 SHIFT = {'scenario': 'upshift'}
 ENDLESS = ('--controller', 'ls8', '--duration', '3600')

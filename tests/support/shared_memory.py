@@ -6,7 +6,8 @@ import contextlib
 import fcntl
 from pathlib import Path
 
-from ddct_bringup.processes.shared_memory import LOCK, SHARED_MEMORY
+from ddct_bringup.processes.shared_memory import LOCK
+from ddct_plant.graph.half_made_ports import SHARED_MEMORY
 
 
 def segments_of(pid: int) -> set[str]:

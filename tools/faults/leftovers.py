@@ -11,8 +11,8 @@ from support.processes import TEST_ID, processes_left
 from support.shared_memory import has_owner, segments_of
 from waiting import wait_until
 
-from ddct_bringup.processes.shared_memory import SHARED_MEMORY
 from ddct_plant.graph.domain import own_domain
+from ddct_plant.graph.half_made_ports import SHARED_MEMORY
 
 LEAVE_S = 25.0
 """Time in s that processes have to end by themselves: a node ends 10 s after its program."""

@@ -7,7 +7,8 @@ import fcntl
 import time
 from pathlib import Path
 
-SHARED_MEMORY = Path('/dev/shm')
+from ddct_plant.graph.half_made_ports import SHARED_MEMORY
+
 LOCK = '_el'
 """End of the name of a file `fastrtps_X_el`, which a live owner of the segment X locks."""
 YOUNG_S = 0.2

@@ -37,6 +37,7 @@ def remove_half_made_ports(domain: int) -> None:
             while not _is_complete(port):
                 if not 0.0 <= time.time() - port.stat().st_mtime < LEAST_AGE_S:
                     port.unlink()
+                    break
                 time.sleep(_POLL_S)
 
 
