@@ -123,6 +123,8 @@ def _values(result: TuningResult, figures: Figures) -> Row:
 
 
 def _front(result: TuningResult, study: 'Study | None') -> Section:
+    if len(result.objectives) == 1:
+        return Section('Front', [])
     figures: list[Block] = [
         Figure(
             f'{goals[0].title} and {goals[1].title}',
@@ -134,8 +136,6 @@ def _front(result: TuningResult, study: 'Study | None') -> Section:
         if study
     ]
     entries = {_label(result, each): each for each in result.front}
-    if len(result.objectives) == 1:
-        return Section('Front', [])
     return Section(
         'Front',
         [*figures, entries_table(result, entries), texts.terms('front')],
