@@ -35,7 +35,7 @@ from ddct_bringup.benchmark.report.document import benchmark_document
 from ddct_bringup.benchmark.report.rules import NO_GAIN, left_open_here, states_that_count
 from ddct_bringup.benchmark.result_types import Result
 from ddct_bringup.benchmark.update_times import UpdateTimesFile
-from ddct_bringup.documents.document import Section, Table
+from ddct_bringup.documents.document import Section, Table, Terms
 from ddct_bringup.evaluation.quantities import MAIN, QUANTITIES
 from ddct_bringup.manifest.manifest import MANIFEST
 from ddct_bringup.manifest.origin import CodeOrigin
@@ -164,6 +164,20 @@ def test_no_main_quantity_is_among_the_further_ones_of_the_page(place: Path) -> 
     symbols = {row[0].value for row in further.rows}
     assert symbols
     assert not symbols & {QUANTITIES[key].symbol for key in MAIN}
+
+
+def test_a_section_on_keys_without_a_table_defines_nothing_and_every_table_has_a_name(
+    place: Path,
+) -> None:
+    result = read_json(Result, place / 'first' / RESULT)
+    document = benchmark_document(result, UpdateTimesFile('pi', {}))
+    found = [each for each in document.content if isinstance(each, Section)]
+    (keys,) = [each for each in found if each.key.endswith('-keys')]
+    kinds = {type(block) for block in keys.content}
+    assert (Terms in kinds) == (Table in kinds)
+    titles = ['Further metrics', 'Differences in further metrics', 'By scenario']
+    tables = [document.table(title) for title in (*titles, 'Figures by scenario')]
+    assert len({id(table) for table in tables}) == 4
 
 
 def test_the_commands_on_the_page_run_in_its_folder(

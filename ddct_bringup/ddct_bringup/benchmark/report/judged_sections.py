@@ -63,12 +63,12 @@ def judged_sections(result: Result, judged: JudgedResult) -> Iterator[Section]:
     further = _further(of)
     yield Section(
         f'How often {name} succeeds',
-        [
+        given(
             _often(of),
             gaps_table(judged.gaps or (), f'figure of {name}'),
             Section('By scenario', [_successes_by_scenario(of)], page_only=True),
             texts.terms('development', 'held out', 'success', 'interval', 'gap'),
-        ],
+        ),
         key=f'{name}-often',
         short=f'{prefix}How often',
     )
@@ -77,12 +77,10 @@ def judged_sections(result: Result, judged: JudgedResult) -> Iterator[Section]:
         f'How well {name} engages',
         given(
             _spreads(of, MAIN),
-            Section('By scenario', [_spreads_by_scenario(of)], folded=True),
+            Section('Figures by scenario', [_spreads_by_scenario(of)], folded=True),
             Section(
                 'Further metrics', given(_spreads(of, further), meanings(further)), folded=True
-            )
-            if further
-            else None,
+            ),
             Note(
                 f'The bag of a case of {name}, in the folder of this page:',
                 shlex.join([*replay, '--out', '../again']),
@@ -110,7 +108,7 @@ def judged_sections(result: Result, judged: JudgedResult) -> Iterator[Section]:
         )
     yield Section(
         f'Which keys drive failure of {name}',
-        [*_causes(of), texts.terms('explained', 'drives', 'most failures')],
+        list(_causes(of)),
         key=f'{name}-keys',
         short=f'{prefix}Which keys',
         page_only=True,
@@ -123,7 +121,9 @@ def judged_sections(result: Result, judged: JudgedResult) -> Iterator[Section]:
                 for pair in of.held_out.pairs_of(name)
             ),
             _differences(of, MAIN),
-            Section('Further metrics', given(_differences(of, further)), folded=True),
+            Section(
+                'Differences in further metrics', given(_differences(of, further)), folded=True
+            ),
             texts.terms('difference', 'difference interval'),
         ),
         key=f'{name}-pairs',
@@ -291,14 +291,19 @@ def _dominance(of: _Judged) -> Table:
 
 
 def _causes(of: _Judged) -> Iterator[Block]:
+    """Yield the table of each set, or why it has none, and the definitions where one has."""
+    tables = 0
     for title, group in zip(_SETS, of.sides[0], strict=True):
         causes = group.causes
         if causes is None:
             continue
         if causes.too_few:
             yield Note(f'{title}: {causes.too_few}.')
-        else:
+        elif causes.keys:
+            tables += 1
             yield Table(title, EFFECT_COLUMNS, [effect_cells(each) for each in causes.keys])
+    if tables:
+        yield texts.terms('explained', 'drives', 'most failures')
 
 
 def _differences(of: _Judged, keys: Sequence[str]) -> Table:
