@@ -54,7 +54,8 @@ class _Words(NamedTuple):
 
 _SPEED = r'speed|spd|rpm|drehzahl|rev|n|w|omega'
 _ROLLS = r'speed|spd|geschw|geschwindigkeit|v|vel|kmh|rpm|drehzahl|n|w|omega'
-_TORQUE = r'torque|trq|tq|tor|moment|md|m|t'
+_TORQUE_WORDS = r'torque|trq|tq|tor|moment|md'
+_TORQUE = rf'{_TORQUE_WORDS}|m|t'
 _ENGINE = r'engine|eng|motor|mot|crank|crankshaft|ice'
 _CLUTCH = r'clutch|clu|cl|kupplung|kup|k1|k2|c1|c2'
 _ASKED = r'request|req|demand|dem|soll|target|tgt|desired|des|cmd|command|setpoint|ref|reference'
@@ -69,10 +70,10 @@ _NAMES: Mapping[str, _Words] = {
     ),
     'load_torque': _Words((r'load|last', _TORQUE)),
     'engine_torque': _Words((_ENGINE, _TORQUE), f'{_ASKED}|{_CLUTCH}|friction|loss'),
-    'engine_speed': _Words((_ENGINE, _SPEED), f'{_ASKED}|idle|{_TORQUE}'.replace('|m|t', '')),
+    'engine_speed': _Words((_ENGINE, _SPEED), f'{_ASKED}|idle|{_TORQUE_WORDS}'),
     'shaft_speed': _Words(
         (r'shaft|input|inp|primary|welle|eing|eingang|eingangswelle|getriebeeingang', _SPEED),
-        f'{_ASKED}|output|engine|motor|wheel|{_TORQUE}'.replace('|m|t', ''),
+        f'{_ASKED}|output|engine|motor|wheel|{_TORQUE_WORDS}',
     ),
     'wheel_speed': _Words((r'wheel|whl|rad', _ROLLS), f'{_ASKED}|vehicle'),
     'vehicle_accel': _Words(
@@ -126,7 +127,8 @@ def guessed_columns(
     `radius_m` is the wheel radius with which wheel speeds in km/h are angular, `full_n_m` the
     torque that is 100 %. Raise DdctError for a log that cannot be read.
     """
-    stated, left = source.units(), dict.fromkeys(source.units())
+    stated = source.units()
+    left = dict.fromkeys(stated)
     found: dict[str, tuple[str, ...]] = {}
     for name, words in _NAMES.items():
         matching = [each for each in left if _matches(words, each)]
