@@ -28,7 +28,7 @@ OWNERS: dict[Any, Path] = {
     node_reports.SAFE_STATE: Path(node_reports.__file__).resolve(),
 }
 """File that spells each name of a topic or of a status."""
-PAGE = (ROOT / 'docs' / 'develop' / 'interfaces.md').read_text(encoding='utf-8')
+PAGE = (ROOT / 'docs' / 'develop' / 'graph.md').read_text(encoding='utf-8')
 
 
 def product_files() -> Iterator[Path]:

@@ -3,7 +3,7 @@
 """
 Signals of a bag by the MCAP library and its ROS 2 decoder, without any code of ours.
 
-What a topic holds is read from docs/develop/interfaces.md alone. All values are SI.
+What a topic holds is read from docs/develop/graph.md alone. All values are SI.
 """
 
 import json

@@ -72,7 +72,7 @@ SHOWN = {
     'w_sr': (RUN.joint_speed[:, 3] * RPM, 'rpm'),
     'w_d_sensed': ((RUN.sensed_slip_speed - RUN.slip_speed) * RPM, 'rpm'),
 }
-"""Values by chart, from the signals of docs/develop/interfaces.md."""
+"""Values by chart, from the signals of docs/develop/graph.md."""
 
 
 @pytest.fixture(scope='module')

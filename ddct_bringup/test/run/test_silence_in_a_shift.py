@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""A shift in real time whose messages stop: each row of the table in time_and_ticks.md."""
+"""A shift in real time whose messages stop: each row of the table of what opens."""
 
 from collections.abc import Collection
 from typing import NamedTuple
