@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Tables of docs/use/missing_messages.md: what follows when a message is missing, and when."""
+"""Tables of docs/use/live.md: what follows when a message is missing, and when."""
 
 from collections.abc import Mapping
 

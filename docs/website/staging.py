@@ -4,6 +4,7 @@
 
 import re
 import shutil
+from collections.abc import Mapping
 from pathlib import Path
 
 from website.notebook_pages import notebook_page
@@ -15,22 +16,10 @@ ROOT = Path(__file__).resolve().parents[2]
 FRONT = 'README.md'
 """The page that becomes index.html."""
 NOTEBOOK = '.ipynb'
-ROOMS = {
-    'Start': ('docs/README.md',),
-    'Notebooks': (
-        'docs/notebooks/thesis_in_one_hour.ipynb',
-        'docs/notebooks/own_controller.ipynb',
-        'docs/notebooks/campaign.ipynb',
-    ),
-    'Use': ('docs/use/*.md',),
-    'Controllers': ('docs/controllers/*.md',),
-    'Thesis': ('docs/thesis/*.md',),
-    'Develop': ('docs/develop/*.md',),
-    'Packages': ('ddct_*/README.md', 'ddct_*/CHANGELOG.md'),
-    'Project': ('[A-QS-Z]*.md',),
-}
-"""Pages besides the front, by their heading in the sidebar."""
+LIST = 'docs/README.md'
+"""The list of pages: it comes first in the sidebar, which has its headings and its order."""
 _LINK = re.compile(r'(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s#]+)(#[^)\s]*)?\)')
+_ROOM = re.compile(r'^## (.+)\n((?:(?!## ).*\n?)*)', re.MULTILINE)
 _FENCED = re.compile(r'(^```.*?^```)', re.DOTALL | re.MULTILINE)
 
 
@@ -41,9 +30,9 @@ def stage(folder: Path, results: Path) -> None:
     `results` is a folder with the files of `website.results`.
     """
     folder.mkdir(parents=True)
-    patterns = (pattern for room in ROOMS.values() for pattern in room)
-    pages = [ROOT / FRONT, *(page for each in patterns for page in sorted(ROOT.glob(each)))]
-    for page in pages:
+    rooms = listed()
+    pages = (page for room in rooms.values() for page in room)
+    for page in (ROOT / FRONT, ROOT / LIST, *pages):
         name = page.relative_to(ROOT)
         if page.suffix == NOTEBOOK:
             text = notebook_page(page, folder / name.parent / 'pictures')
@@ -54,7 +43,7 @@ def stage(folder: Path, results: Path) -> None:
         text = with_results(text, results, folder / name.parent / 'pictures')
         text = with_schemas(text, folder / name.parent / 'schemas')
         if name == Path(FRONT):
-            name, text = Path('index.md'), text + _sidebar()
+            name, text = Path('index.md'), text + _sidebar(rooms)
         target = folder / name
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_text(text, encoding='utf-8')
@@ -93,13 +82,22 @@ def staged(page: Path, text: str, folder: Path) -> str:
     )
 
 
-def _sidebar() -> str:
+def listed() -> dict[str, list[Path]]:
+    """Return the pages by heading of the list: those that the first cells of its rows link to."""
+    rooms: dict[str, list[Path]] = {}
+    for heading, rows in _ROOM.findall((ROOT / LIST).read_text(encoding='utf-8')):
+        cells = ' '.join(row.split(' | ')[0] for row in rows.splitlines() if row[:3] == '| [')
+        rooms[heading] = [(ROOT / LIST).parent / match[3] for match in _LINK.finditer(cells)]
+    return {heading: [page.resolve() for page in pages] for heading, pages in rooms.items()}
+
+
+def _sidebar(rooms: Mapping[str, list[Path]]) -> str:
     """Return the hidden lists of pages by which Sphinx orders the sidebar."""
     lists = {
-        heading: [str(Path(pattern).with_suffix('')) for pattern in patterns]
-        for heading, patterns in ROOMS.items()
+        heading: [str(page.relative_to(ROOT).with_suffix('')) for page in pages]
+        for heading, pages in rooms.items()
     }
-    lists['Reference'] = ['reference/*']
+    lists = {'Pages': [str(Path(LIST).with_suffix(''))], **lists, 'Reference': ['reference/*']}
     return ''.join(
         f'\n```{{toctree}}\n:hidden:\n:glob:\n:caption: {heading}\n\n'
         + '\n'.join(names)

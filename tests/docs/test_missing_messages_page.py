@@ -7,7 +7,7 @@ from generator.pages import DOCS, as_markdown, shown_tables
 
 from ddct_bringup.processes.graph_nodes import NODE_PROGRAMS
 
-PAGE = (DOCS / 'use' / 'missing_messages.md').read_text(encoding='utf-8')
+PAGE = (DOCS / 'use' / 'live.md').read_text(encoding='utf-8')
 
 
 def test_the_tables_are_those_of_the_code() -> None:

@@ -23,11 +23,11 @@ def named(page: Path, heading: str) -> list[str]:
 
 
 def test_every_figure_is_on_the_page_of_the_verdict() -> None:
-    assert named(USE / 'verdict.md', 'Figures') == [each.key for each in FIGURES]
+    assert named(USE / 'judging.md', 'Figures') == [each.key for each in FIGURES]
 
 
 def test_every_metric_and_every_other_key_of_a_run_is_on_the_page() -> None:
-    page = USE / 'metrics_and_symbols.md'
+    page = USE / 'judging.md'
     assert named(page, 'Metrics of scores.json') == [each.key for each in OTHERS]
     others = to_json(run_entry(run_without_score('bag', None, 'why'))).keys() - {'metrics'}
     assert sorted(named(page, 'Other keys of a run')) == sorted(others)

@@ -34,7 +34,7 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.key_names import scenario_options
 from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-PAGE = (ROOT / 'docs' / 'use' / 'security.md').read_text(encoding='utf-8')
+PAGE = (ROOT / 'docs' / 'use' / 'live.md').read_text(encoding='utf-8')
 NAMED = 'named_by_a_key'
 FILES = (f'{NAMED}.py', f'{NAMED}.yaml', f'{NAMED}.csv')
 PROFILE = {'csv': FILES[2], 'time': 't', 'value': 'c', 'unit': 'N m'}

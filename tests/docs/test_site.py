@@ -85,13 +85,13 @@ def test_the_site_is_whole(site: Path) -> None:
     notebook = page(site, 'docs/notebooks/thesis_in_one_hour')
     assert '<table' in notebook and 'alt="Slip reference over time' in notebook
     assert 'href="../notebooks/thesis_in_one_hour.html"' in page(site, 'docs/use/python')
-    assert '>scores.schema.json<' in page(site, 'docs/use/json')
+    assert '>scores.schema.json<' in page(site, 'docs/use/python')
     assert len([*(site / '_downloads').rglob('*.schema.json')]) == len(DOCUMENTS)
     for name in ('docs/develop/gear_shift', 'docs/thesis/model', 'docs/thesis/plant'):
         assert '<math ' in page(site, name)
     text = ' '.join(page(site, name) for name in PAGES_OF_RESULTS)
     assert [f'{file} {name}' for file, name in _marks() if f'{file} {name}<' not in text] == []
-    assert 'alt="Title of engagements_launch"' in page(site, 'docs/use/engagements')
+    assert 'alt="Title of engagements_launch"' in page(site, 'docs/use/campaigns')
 
 
 def page(site: Path, name: str) -> str:

@@ -141,7 +141,7 @@ def test_files_next_to_a_log_do_not_belong_to_it(folder: Path) -> None:
 
 
 def test_the_page_lists_the_quantities_with_their_units() -> None:
-    page = (ROOT / 'docs' / 'use' / 'own_car.md').read_text(encoding='utf-8')
+    page = (ROOT / 'docs' / 'use' / 'logs.md').read_text(encoding='utf-8')
     rows = re.findall(r'^\| `(\w+)` \| ([^|]+) \|', page, re.MULTILINE)
     assert [name for name, _ in rows] == list(QUANTITIES)
     for name, units in rows:

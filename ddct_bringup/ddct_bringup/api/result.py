@@ -98,7 +98,7 @@ class Run:
 
     @property
     def state(self) -> str:
-        """State of the run, as in docs/use/verdict.md: `engaged` is the only success."""
+        """State of the run, as in docs/use/judging.md: `engaged` is the only success."""
         return self.scores.state
 
     @property

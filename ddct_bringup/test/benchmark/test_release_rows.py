@@ -26,7 +26,7 @@ from ddct_plant.scenario.file import load_scenario
 pytestmark = pytest.mark.slow
 
 SYNTHESISED = ('hinf_fitted', 'hinf_sampled', 'hinf_thesis')
-"""Controllers that are synthesised in each process: docs/use/verify.md has what that changes."""
+"""Controllers that are synthesised in each process; docs/use/benchmark.md: Verify a result."""
 ROWS = 8
 """Number of rows that are computed again, each of another controller and case."""
 
@@ -115,7 +115,7 @@ def test_every_controller_of_the_release_stands_in_every_table_with_all_its_runs
 
 
 def test_the_page_has_every_table() -> None:
-    page = Path(__file__).parents[3] / 'docs' / 'use' / 'benchmark_results.md'
+    page = Path(__file__).parents[3] / 'docs' / 'use' / 'benchmark.md'
     marks = re.findall(r'<!-- table: benchmark (\w+) -->', page.read_text(encoding='utf-8'))
     scenarios = Cases.packaged().whole.values_of(SCENARIO)
     tables = [name for each in scenarios for name in (each, f'{each}_figures')]

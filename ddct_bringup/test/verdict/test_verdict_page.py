@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The page docs/use/verdict.md agrees with the code and the packaged limits."""
+"""The page docs/use/judging.md agrees with the code and the packaged limits."""
 
 import re
 from pathlib import Path
@@ -8,7 +8,7 @@ from pathlib import Path
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import STATES
 
-PAGE = (Path(__file__).resolve().parents[3] / 'docs' / 'use' / 'verdict.md').read_text(
+PAGE = (Path(__file__).resolve().parents[3] / 'docs' / 'use' / 'judging.md').read_text(
     encoding='utf-8'
 )
 

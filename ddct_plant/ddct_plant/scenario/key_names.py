@@ -21,7 +21,7 @@ _GONE = {
     'gear by gearbox.measured_gears and gearbox.measured_ratios',
 }
 """What to give in place of a key that is no longer there."""
-_PAGE = 'docs/use/scenario.md'
+_PAGE = 'docs/use/cases.md'
 
 
 @cache

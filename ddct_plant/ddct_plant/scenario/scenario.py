@@ -36,7 +36,7 @@ from ddct_plant.shift.parameters import ShiftParameters
 
 @dataclass(frozen=True)
 class Scenario(OptionGroup):
-    """One driving situation and its score window; docs/use/scenario.md lists every key."""
+    """One driving situation and its score window; docs/use/cases.md lists every key."""
 
     name: str = option(
         REQUIRED,

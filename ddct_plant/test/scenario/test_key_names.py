@@ -46,7 +46,7 @@ def test_the_error_on_a_name_nearly_right_or_without_its_section_names_the_key(w
 def test_of_many_keys_at_most_three_are_named_and_of_none_the_page_that_lists_them():
     assert sum('noise' in key for key in KEYS) > MOST_MEANT
     assert key_hint('noise', KEYS).count('noise') == MOST_MEANT == 3
-    assert key_hint('nonsense', KEYS) == 'docs/use/scenario.md lists the keys'
+    assert key_hint('nonsense', KEYS) == 'docs/use/cases.md lists the keys'
 
 
 @pytest.mark.parametrize('name', ['K_usura', 'wear_gain'])

@@ -1,13 +1,13 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The examples for learners run, and the search of one gives a controller that engages."""
+"""The search of the example for learners gives a controller that engages."""
 
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
-from support.documented import ROOT, run_examples
+from support.documented import ROOT
 
 from ddct_bringup.api import run
 
@@ -22,7 +22,3 @@ def test_half_of_the_search_learns_to_engage_worn_and_new_clutches(tmp_path: Pat
         wear: run(str(learnt), scenario='launch', wear_gain=wear).state for wear in (0.7, 1.0, 1.3)
     }
     assert set(states.values()) == {'engaged'}
-
-
-def test_the_examples_of_the_page_run(tmp_path: Path) -> None:
-    run_examples('docs/use/learners.md', tmp_path)

@@ -81,7 +81,7 @@ def add_limits_option(parser: argparse.ArgumentParser) -> None:
         '--limits',
         type=Path,
         metavar='FILE',
-        help='limits to judge runs by, see docs/use/verdict.md; default: the packaged ones',
+        help='limits to judge runs by, see docs/use/judging.md; default: the packaged ones',
     )
 
 
