@@ -15,7 +15,11 @@ from ddct_bringup.identification.from_log.command import NEEDED
 from ddct_bringup.identification.from_log.fit import fit_log
 from ddct_bringup.identification.from_log.prediction import predict
 from ddct_bringup.identification.from_log.result import LogFit
-from ddct_bringup.identification.from_log.stretches import stretches_of, white_noise
+from ddct_bringup.identification.from_log.stretches import (
+    resolution,
+    stretches_of,
+    white_noise,
+)
 from ddct_bringup.logs.columns import TIME, own_columns
 from ddct_bringup.logs.log import read_log
 from ddct_plant.base.errors import DdctError
@@ -61,6 +65,12 @@ def test_noise_with_a_memory_widens_the_intervals(fit: LogFit) -> None:
     for name in ('engine_inertia', 'total_ratio', 'vehicle_inertia'):
         assert slow.std[name] > 2.0 * fit.std[name]
     assert sum(hits(slow)) >= 6
+
+
+def test_the_step_of_a_rounded_signal_is_found() -> None:
+    signal = 80.0 + 60.0 * np.sin(np.arange(300) / 40.0)
+    assert resolution(0.4 * np.round(signal / 0.4) - 100.0) == pytest.approx(0.4)
+    assert resolution(signal) == resolution(np.full(300, 7.0)) == 0.0
 
 
 def test_white_noise_is_measured_without_the_signal() -> None:

@@ -5,6 +5,7 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 from samples import sampled
 from support.logs import written
@@ -13,9 +14,10 @@ from support.runs import plan, record
 from ddct_bringup.identification.from_log.base_car import drag_of
 from ddct_bringup.identification.from_log.command import NEEDED
 from ddct_bringup.identification.from_log.fit import fit_log
+from ddct_bringup.identification.from_log.stretches import TORQUES
 from ddct_bringup.identification.identify import main
 from ddct_bringup.logs.columns import TIME, own_columns
-from ddct_bringup.logs.log import read_log
+from ddct_bringup.logs.log import SPEEDS, read_log
 from ddct_bringup.scores.csv_text import signals_csv
 from ddct_plant.scenario.file import load_scenario
 
@@ -46,6 +48,20 @@ def test_all_eight_parameters_of_an_exact_log_are_in_their_intervals(
         assert abs(fit.values[name] - true) < 2.5 * half, name
         misses += not lowest <= true <= highest
     assert misses <= 1
+
+
+def test_whole_newton_metres_do_not_determine_the_shaft_while_plates_slip(tmp_path: Path) -> None:
+    """Taken as exact, they give J_p 2.4 times and c_sa 1.4 times, with intervals of 15 %."""
+    record(plan('pi', 'headless', duration_s=3.0), tmp_path / 'pi')
+    log = read_log(tmp_path / 'pi', own_columns(TIME, *NEEDED), NEEDED)
+    for name, step in {**dict.fromkeys(SPEEDS, 0.02), **dict.fromkeys(TORQUES, 1.0)}.items():
+        log.signals[name] = step * np.round(log.signals[name] / step)
+    thesis = load_scenario('thesis')
+    fit = fit_log(log, thesis.driveline, drag_of(thesis))
+    assert 'shaft_inertia' in fit.undetermined
+    for name in ('engine_inertia', 'halfshaft_stiffness', 'vehicle_inertia'):
+        lowest, highest = fit.interval(name) or (np.nan, np.nan)
+        assert lowest <= thesis.driveline.values()[name] <= highest, name
 
 
 @pytest.mark.parametrize('kind', sampled(['bag', 'csv'], every=2))

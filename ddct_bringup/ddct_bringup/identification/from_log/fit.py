@@ -9,6 +9,7 @@ import numpy as np
 
 from ddct_bringup.identification.from_log.perturbed import (
     half_of_the_rows,
+    rounded_again,
     with_more_noise,
 )
 from ddct_bringup.identification.from_log.problem import LogProblem, used
@@ -59,11 +60,12 @@ def fit_log(
     is 0 if it is not given: the others are relative to it. `evaluated` is called at each
     evaluation of the residuals, of which a fit has hundreds to thousands.
 
-    The torques of a log are not quite those of the car: they have noise, and nobody knows them
-    between their rows. Both bias a fit. So it is repeated with more of either, and what moves then
-    is extrapolated back, and counts as a deviation (simulation and extrapolation, Cook and
-    Stefanski 1994). So does the scatter by the noise, which is added anew in each
-    repetition. Numbers that the log does not determine keep their start value, and are listed.
+    The torques of a log are not quite those of the car: they have noise, they are rounded, and
+    nobody knows them between their rows. Each biases a fit. So it is repeated with more of each,
+    and what moves then is extrapolated back, and counts as a deviation (simulation and
+    extrapolation, Cook and Stefanski 1994). So does the scatter over the repetitions. What coarser
+    rounding moves counts in full: a fit has taken in a part of such errors before. Numbers that
+    the log does not determine keep their start value, and are listed.
     Raise DdctError when no number is determined, or when the fit does not converge.
     """
     known_delays, stretches = known_delays or {}, stretches_of(log, known_load)
@@ -72,9 +74,9 @@ def fit_log(
     signals = [name for name in DELAYED if name in log.signals]
     reference = known_delays.get(REFERENCE, 0.0)
     delays = dict.fromkeys((REFERENCE, *signals), reference) | dict(known_delays)
-    noisier, thinner = (
+    noisier, thinner, coarser = (
         [stretches_of(each, known_load) for each in logs]
-        for logs in (with_more_noise(log), half_of_the_rows(log))
+        for logs in (with_more_noise(log), half_of_the_rows(log), rounded_again(log))
     )
     free = [name for name in PARAMETERS if name not in fixed]
     free += [name for name in signals if name not in known_delays]
@@ -89,9 +91,11 @@ def fit_log(
         # Half of the rows have twice the noise in each second, too. The error between rows grows
         # with the square of their step, so a third of the rest is that of corners anywhere.
         between = (thinned - by_noise) / 3.0 if thinner else 0.0 * x
-        std = np.sqrt(by_speeds + variance + by_noise**2 + between**2)
+        by_rounding, scatter = _mean_and_variance(problem.moves(x, coarser))
+        std = np.sqrt(by_speeds + variance + scatter)
+        std = np.sqrt(std**2 + by_noise**2 + between**2 + by_rounding**2)
         # Corners on rows make no error: half of it is moved back.
-        moved = by_noise + between / 2.0
+        moved = by_noise + between / 2.0 + by_rounding
         found = unknowns.not_determined(std, moved)
         if not found:
             std = np.hypot(std, [_lateness(log, name) / DELAY_S for name in names])

@@ -3,14 +3,15 @@
 """Logs with more of the errors of the torques, by which a fit measures what they do to it."""
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 
-from ddct_bringup.identification.from_log.stretches import TORQUES, white_noise
+from ddct_bringup.identification.from_log.stretches import TORQUES, resolution, white_noise
 from ddct_bringup.logs.log import SPEEDS, MeasuredLog
 
-_NOISY = 1e-3
-"""White noise of a torque over its standard deviation, below which a fit is not affected."""
+_NEGLIGIBLE = 1e-3
+"""Noise or rounding of a torque over its standard deviation, below which no fit is affected."""
 _SEEDS = range(8)
 """Seeds of the logs with more noise."""
 _DENSE = 0.5
@@ -18,9 +19,16 @@ _DENSE = 0.5
 
 
 def with_more_noise(log: MeasuredLog) -> list[MeasuredLog]:
-    """Return logs with twice the variance of the white noise of the torques; none without it."""
-    noise = {name: white_noise(log.samples(name)[1]) for name in TORQUES}
-    if all(noise[name] <= _NOISY * float(np.std(log.samples(name)[1])) for name in TORQUES):
+    """
+    Return logs with twice the variance of the white noise of the torques; none without it.
+
+    A torque that is rounded to more than its noise stays.
+    """
+    noise = {
+        name: 0.0 if _rounding(log, name) else white_noise(log.samples(name)[1])
+        for name in TORQUES
+    }
+    if all(noise[name] <= _least(log, name) for name in TORQUES):
         return []
     return [
         _changed(
@@ -32,6 +40,44 @@ def with_more_noise(log: MeasuredLog) -> list[MeasuredLog]:
         )
         for random in map(np.random.default_rng, _SEEDS)
     ]
+
+
+def rounded_again(log: MeasuredLog) -> list[MeasuredLog]:
+    """
+    Return logs whose torques are rounded to twice their step; none without rounded torques.
+
+    A torque that moves slowly stays on one step for many rows, so the error of its rounding is no
+    white noise. There are two ways to take the steps in pairs, for each torque.
+    """
+    steps = {name: step for name in TORQUES if (step := _rounding(log, name))}
+    return [
+        _changed(
+            log,
+            {
+                name: _in_pairs(log.signals[name], step, pair)
+                for (name, step), pair in zip(steps.items(), pairs, strict=True)
+            },
+        )
+        for pairs in (product(range(2), repeat=len(steps)) if steps else ())
+    ]
+
+
+def _rounding(log: MeasuredLog, name: str) -> float:
+    """Return the step to which a torque is rounded, 0 where that is small or within its noise."""
+    values = log.samples(name)[1]
+    step = resolution(values)
+    small = step / np.sqrt(12.0) <= _least(log, name)
+    return 0.0 if small or white_noise(values) > 0.5 * step else step
+
+
+def _in_pairs(values: np.ndarray, step: float, pair: int) -> np.ndarray:
+    """Return values with the mean of two neighbouring steps in place of both."""
+    shift = (pair + 0.5) * step
+    return 2.0 * step * np.round((values + shift) / (2.0 * step)) - shift
+
+
+def _least(log: MeasuredLog, name: str) -> float:
+    return _NEGLIGIBLE * float(np.std(log.samples(name)[1]))
 
 
 def half_of_the_rows(log: MeasuredLog) -> list[MeasuredLog]:

@@ -11,7 +11,7 @@ import numpy as np
 from ddct_bringup.identification.from_log.problem import used
 from ddct_bringup.identification.from_log.response import residuals_of
 from ddct_bringup.identification.from_log.result import SLIP, LogFit
-from ddct_bringup.identification.from_log.stretches import Stretch, white_noise
+from ddct_bringup.identification.from_log.stretches import Stretch, resolution, white_noise
 from ddct_bringup.logs.log import SPEEDS
 
 NEGLIGIBLE = 2e-4
@@ -20,8 +20,6 @@ _STILL = 1e-9
 """Standard deviation in rad/s assumed for a speed that does not change."""
 _BEYOND_NOISE = 2.0
 """Least standard deviation of a speed that varies, over that of its white noise."""
-_REPEATS = 0.25
-"""Least share of equal neighbours in a signal whose resolution shows."""
 _SAME = 1e-9
 """Largest difference in rad/s of two equal values, by rounding."""
 
@@ -85,19 +83,10 @@ def _still(measured: np.ndarray, fitted_spread: float) -> str | None:
         return 'it is constant'
     least = {
         'its noise': _BEYOND_NOISE * white_noise(measured),
-        'its resolution': _resolution(measured),
+        'its resolution': resolution(measured),
         f'{100.0 * NEGLIGIBLE:g} % of that in the fitted data': NEGLIGIBLE * fitted_spread,
     }
     for name, size in least.items():
         if spread <= size:
             return f'its deviation of {spread:.2g} rad/s is not beyond {name}'
     return None
-
-
-def _resolution(measured: np.ndarray) -> float:
-    """Return the least step of a signal with many equal neighbours, 0 where it has none."""
-    steps = np.abs(np.diff(measured))
-    equal = steps <= _SAME
-    if not steps.size or equal.mean() < _REPEATS or equal.all():
-        return 0.0
-    return float(steps[~equal].min())

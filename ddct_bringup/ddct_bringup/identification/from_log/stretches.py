@@ -36,6 +36,10 @@ _FINEST = 20
 """Most grid steps in one step of the speeds."""
 _MEDIAN = 0.6745
 """Median of the magnitude of a standard normal number."""
+_SAME = 1e-9
+"""Largest difference of two equal values, over the largest value, by the rounding of numbers."""
+_WHOLE = 0.02
+"""Largest distance of a whole number of steps from whole."""
 KnownLoad = Callable[[np.ndarray], np.ndarray]
 """Function from wheel speeds in rad/s to the known part of C_load in N m, (n,) each."""
 
@@ -187,3 +191,13 @@ def white_noise(values: np.ndarray) -> float:
     if len(values) < FEWEST_SAMPLES:
         return 0.0
     return float(np.median(np.abs(np.diff(values, 3))) / _MEDIAN / np.sqrt(20.0))
+
+
+def resolution(values: np.ndarray) -> float:
+    """Return the step of a signal whose values are whole steps apart, 0 of any other."""
+    changes = np.abs(np.diff(np.unique(values)))
+    changes = changes[changes > _SAME * np.abs(values).max(initial=0.0)]
+    if not changes.size:
+        return 0.0
+    steps = changes / changes.min()
+    return float(changes.min()) if np.all(np.abs(steps - np.round(steps)) < _WHOLE) else 0.0
