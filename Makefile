@@ -3,7 +3,7 @@ SHELL := /bin/bash
 .SHELLFLAGS := -e -o pipefail -c
 .DELETE_ON_ERROR:
 .PHONY: help setup demo docs fmu gym-extra tune-extra sbom test test-fast test-nightly lint fuzz faults bench soak loaded-runs benchmark-rows release \
-    site lock clean
+    lock clean
 
 ifneq ($(words $(CURDIR)),1)
 $(error colcon fails in a folder with a space in its path, move the repository: $(CURDIR))
@@ -33,7 +33,7 @@ NEEDED_AT_RUN := bokeh, control, daqp, jinja2, matplotlib, osqp, scipy.signal, t
 
 help:
 	@echo 'make setup | fmu | gym-extra | tune-extra | demo | test | test-fast | test-nightly | fuzz | faults | lint | docs | bench | soak | loaded-runs |' \
-	    'benchmark-rows | sbom | release | site | lock | clean (see docs/use/setup.md)'
+	    'benchmark-rows | sbom | release | lock | clean (see docs/use/setup.md)'
 
 setup: $(WORKSPACE_BUILT)
 
@@ -119,10 +119,6 @@ fuzz: fmu .venv/.fuzz
 faults: setup
 	@$(SOURCED) $(TOOL) faults $(if $(JSON),--json '$(JSON)') $(CASES)
 
-# Tables, charts and diagrams of the pages, and the notebooks, minutes; KINDS='options plant' writes only those.
-docs: setup .venv/.test
-	@$(SOURCED) $(BIN)/python docs/generate.py $(KINDS)
-
 # With everything that the tests install: mypy judges otherwise without a package's types than with them.
 lint: fmu gym-extra tune-extra .venv/.site .venv/.test
 	@status=0; \
@@ -167,7 +163,7 @@ release: setup
 # What it shows of results, programs compute first: some minutes, and again only once the sources have changed.
 RESULTS := build/results
 SOURCES := $(shell find ddct_*/ddct_* -name '*.py' -o -name '*.yaml' -o -name '*.parquet')
-site: setup .venv/.site $(RESULTS)/numbers.json $(RESULTS)/benchmark.json $(RESULTS)/studies.json
+docs: setup .venv/.site $(RESULTS)/numbers.json $(RESULTS)/benchmark.json $(RESULTS)/studies.json
 	@$(SOURCED) PYTHONPATH="$(CURDIR)/docs:$$PYTHONPATH" $(BIN)/python -P -m website --results '$(RESULTS)'
 
 $(RESULTS)/numbers.json: COMMAND = reproduce numbers --json -

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Build the documentation site into a folder that opens from disk: `make site`."""
+"""Build the documentation site into a folder that opens from disk: `make docs`."""
 
 import argparse
 import shutil
@@ -22,11 +22,11 @@ def build(out: Path, results: Path, theme: str = 'furo') -> int:
     """
     with tempfile.TemporaryDirectory(prefix='ddct_site_') as made:
         source, html = Path(made, 'source'), Path(made, 'html')
-        stage(source, results)
+        stage(source)
         settings = str(Path(__file__).parent)
         code = build_main(
             ['-q', '-W', '--keep-going', '-b', 'html', '-c', settings, '-D', f'html_theme={theme}']
-            + [str(source), str(html)]
+            + ['-D', f'ddct_results={results.resolve()}', str(source), str(html)]
         )
         if code == 0:
             shutil.rmtree(out, ignore_errors=True)
@@ -37,7 +37,7 @@ def build(out: Path, results: Path, theme: str = 'furo') -> int:
 
 def main() -> int:
     """Build, and name the page to open."""
-    parser = argparse.ArgumentParser(prog='make site', description=__doc__)
+    parser = argparse.ArgumentParser(prog='make docs', description=__doc__)
     parser.add_argument('--out', type=Path, default=ROOT / 'site', help='folder of the site')
     parser.add_argument(
         '--results',
@@ -50,7 +50,7 @@ def main() -> int:
     try:
         code = build(out, options.results)
     except DdctError as error:
-        sys.exit(f'make site: {error}')
+        sys.exit(f'make docs: {error}')
     print(f'open {out / "index.html"}' if code == 0 else 'the site has warnings: see above')
     return code
 

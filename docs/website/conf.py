@@ -15,7 +15,7 @@ from website.staging import ROOT
 project = 'Clutch slip control of a dual dry clutch transmission'
 author = copyright = 'DDCT team'
 version = release = ElementTree.parse(ROOT / 'ddct_bringup' / 'package.xml').findtext('version')
-extensions = ['myst_parser', 'sphinx.ext.autodoc']
+extensions = ['myst_parser', 'sphinx.ext.autodoc', 'website.directives']
 html_title = f'ddct {release}'
 html_show_sphinx = False
 html_copy_source = False

@@ -9,8 +9,6 @@ from pathlib import Path
 
 from website.notebook_pages import notebook_page
 from website.reference import write_reference
-from website.results import with_results
-from website.schemas import with_schemas
 
 ROOT = Path(__file__).resolve().parents[2]
 FRONT = 'README.md'
@@ -23,12 +21,8 @@ _ROOM = re.compile(r'^## (.+)\n((?:(?!## ).*\n?)*)', re.MULTILINE)
 _FENCED = re.compile(r'(^```.*?^```)', re.DOTALL | re.MULTILINE)
 
 
-def stage(folder: Path, results: Path) -> None:
-    """
-    Write the pages, the files that they link to, and the reference into a folder.
-
-    `results` is a folder with the files of `website.results`.
-    """
+def stage(folder: Path) -> None:
+    """Write the pages, the files that they link to, and the reference into a folder."""
     folder.mkdir(parents=True)
     rooms = listed()
     pages = (page for room in rooms.values() for page in room)
@@ -40,8 +34,6 @@ def stage(folder: Path, results: Path) -> None:
         else:
             text = page.read_text(encoding='utf-8')
         text = staged(page, text, folder)
-        text = with_results(text, results, folder / name.parent / 'pictures')
-        text = with_schemas(text, folder / name.parent / 'schemas')
         if name == Path(FRONT):
             name, text = Path('index.md'), text + _sidebar(rooms)
         target = folder / name

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NoReturn
 
 import pytest
-from support.documented import Block
+from support.documented import Block, blocks
 from support.documented_commands import (
     NOT_RUN_HERE,
     SHELL_BLOCKS,
@@ -76,3 +76,16 @@ def test_every_reason_not_to_run_a_command_is_of_a_command_on_a_page() -> None:
     lines = [line for block in SHELL_BLOCKS for line in block.lines]
     unused = [words for words in NOT_RUN_HERE if not any(each.startswith(words) for each in lines)]
     assert unused == []
+
+
+def test_commands_in_shell_blocks_begin_with_ddct_or_a_path() -> None:
+    """A bare program name works in no shell, and would slip through these tests."""
+    names = {'bringup', 'compare', 'score', 'report', 'live', 'reproduce', 'design', 'identify'}
+    bare = [
+        (block.page, line)
+        for block in blocks()
+        for line in block.lines
+        if line.split()[0] in names and block.language == ''
+    ]
+    assert bare == []
+    assert {block.page for block in SHELL_BLOCKS} >= {'README.md', 'docs/controllers/mpc.md'}

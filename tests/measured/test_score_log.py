@@ -10,12 +10,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support.documented import ROOT
 from support.other_car import COLUMNS, LASTS_S, TRUE, drive, write_csv
 from support.runs import plan, record
 
 from ddct_bringup.bag.measured_run import read_measured_run
-from ddct_bringup.logs.columns import QUANTITIES, load_columns
+from ddct_bringup.logs.columns import load_columns
 from ddct_bringup.metrics.catalogue import METRICS, NEEDED_BY
 from ddct_bringup.programs import report, score
 from ddct_bringup.run.timing_and_failure import NOTE_FILE
@@ -138,15 +137,6 @@ def test_files_next_to_a_log_do_not_belong_to_it(folder: Path) -> None:
     """A run of ours that failed may have been in the same folder."""
     (folder / NOTE_FILE).write_text('{}')
     assert scored(folder)['valid'] is True
-
-
-def test_the_page_lists_the_quantities_with_their_units() -> None:
-    page = (ROOT / 'docs' / 'use' / 'logs.md').read_text(encoding='utf-8')
-    rows = re.findall(r'^\| `(\w+)` \| ([^|]+) \|', page, re.MULTILINE)
-    assert [name for name, _ in rows] == list(QUANTITIES)
-    for name, units in rows:
-        if units != 'as above':
-            assert QUANTITIES[name].unit in units.split(', '), name
 
 
 def test_every_name_of_what_needs_a_quantity_is_a_metric() -> None:

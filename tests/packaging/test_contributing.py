@@ -5,7 +5,6 @@
 import re
 from pathlib import Path
 
-import pytest
 import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -17,11 +16,6 @@ def test_every_path_is_there() -> None:
     linked = re.findall(r'\]\((?!https?:)([\w./]+)\)', PAGE)
     assert len(named) >= 6
     assert [path for path in (*named, *linked) if not (ROOT / path).exists()] == []
-
-
-@pytest.mark.parametrize('thing', ['topic', 'controller', 'scenario', 'number of the thesis'])
-def test_the_page_has_a_row_for_each_thing_to_add(thing: str) -> None:
-    assert re.search(rf'^\| an? {thing} \|', PAGE, re.MULTILINE)
 
 
 def test_the_workflow_runs_the_checks_of_this_page_on_each_python() -> None:

@@ -108,13 +108,6 @@ def test_setup_py_requires_exactly_what_is_imported(package: str) -> None:
     assert not required & extras
 
 
-def test_the_page_on_apt_names_what_rosdep_cannot_install() -> None:
-    page = (ROOT / 'docs' / 'use' / 'setup.md').read_text(encoding='utf-8')
-    told = set(re.findall(r'`([a-z0-9-]+)`', page.partition('## With apt')[2]))
-    modules = {module for package in PACKAGES for module in imported(package)}
-    assert {name for module in modules for name in without_key(module)} <= told
-
-
 def test_the_container_of_the_way_with_apt_installs_from_pip_as_the_page_states() -> None:
     """Ubuntu refuses packages of pip beside those of apt, unless the variable allows them."""
     page = (ROOT / 'docs' / 'use' / 'setup.md').read_text(encoding='utf-8')

@@ -3,7 +3,6 @@
 """What is heavy to import is imported where it is first needed, by no clock but by its name."""
 
 import pkgutil
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -95,14 +94,6 @@ def test_every_name_of_a_package_with_late_imports_is_there(package: ModuleType)
         assert name in words or f'{words[-2]}_{words[-1]}' == name
         assert name not in modules or isinstance(found, ModuleType), 'a module hides it'
     assert set(package.__all__) <= set(dir(package))
-
-
-def test_the_names_of_the_python_interface_are_those_of_its_page() -> None:
-    page = (ROOT / 'docs' / 'use' / 'python.md').read_text(encoding='utf-8')
-    named = set(re.findall(r'\w+', page))
-    assert {'run', 'compare', 'sweep', 'load', 'table', 'figure'} <= set(vars(api)['__all__'])
-    functions = [name for name in vars(api)['__all__'] if name.islower()]
-    assert [name for name in functions if name not in named] == []
 
 
 def test_a_name_that_the_python_interface_does_not_have_is_refused() -> None:

@@ -3,7 +3,6 @@
 """Imports go down only: between packages, between the rooms of a package."""
 
 import ast
-import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -73,21 +72,6 @@ def test_no_room_imports_in_a_circle(package: str) -> None:
     TopologicalSorter(room_arrows(package)).prepare()
 
 
-@pytest.mark.parametrize('package', ['ddct_plant', 'ddct_bringup'])
-def test_the_page_lists_every_room_below_those_that_it_imports(package: str) -> None:
-    page = (ROOT / 'docs' / 'develop' / 'architecture.md').read_text(encoding='utf-8')
-    section = page.partition(f'## The rooms of `{package}`')[2].partition('\n## ')[0]
-    rows = re.findall(r'^\| `(\w+)(?:/|\.py)` \|', section, re.MULTILINE)
-    folder = ROOT / package / package
-    rooms = {file.parent.name for file in folder.glob('*/__init__.py')}
-    rooms |= {file.stem for file in folder.glob('*.py')} - {'__init__'}
-    assert sorted(rows) == sorted(rooms)
-    arrows = room_arrows(package)
-    arrows.pop('__init__', None)  # what is done before all imports
-    for room, imported in arrows.items():
-        assert imported <= set(rows[: rows.index(room)]), room
-
-
 TABLES_OF_NAMES = {
     'benchmark.file_names',
     'floor.metric_units',
@@ -107,22 +91,6 @@ def test_programs_call_the_python_interface_alone() -> None:
         if '.'.join(name[:-1]) not in TABLES_OF_NAMES
     }
     assert others == set()
-
-
-STEPS_OF_PAGES = [('architecture.md', 11), ('paths.md', 34)]
-"""Pages with paths with the least number of their steps."""
-
-
-@pytest.mark.parametrize(('name', 'least'), STEPS_OF_PAGES)
-def test_the_steps_from_a_program_to_the_model_are_there(name: str, least: int) -> None:
-    page = (ROOT / 'docs' / 'develop' / name).read_text(encoding='utf-8')
-    steps = re.findall(r'^\| \d+ \| `([\w/]+\.py)`(?:: (.*?))? \|', page, re.MULTILINE)
-    assert len(steps) >= least
-    for path, names in steps:
-        package = path.partition('/')[0]
-        code = (ROOT / package / path).read_text(encoding='utf-8')
-        for name in re.findall(r'`(?:\w+\.)?(\w+)`', names):
-            assert re.search(rf'^ *(?:def|class) {name}\b', code, re.MULTILINE), (path, name)
 
 
 @pytest.mark.process

@@ -52,14 +52,6 @@ def test_help_lists_every_program_with_what_it_does(capsys: pytest.CaptureFixtur
     assert len(columns) == 1
 
 
-def test_the_page_of_programs_names_every_program() -> None:
-    text = (ROOT / 'docs' / 'use' / 'programs.md').read_text(encoding='utf-8')
-    page = text.partition('| program |')[2]
-    rows = page.partition('\n\n')[0].splitlines()[2:]
-    named = {name for row in rows for name in re.findall(r'`([a-z-]+)`', row.split('|')[1])}
-    assert named == set(programs())
-
-
 def test_programs_start_without_the_slow_parts_of_scipy() -> None:
     """Scipy is imported when something is computed: --help and errors need not wait for it."""
     names = (

@@ -13,7 +13,7 @@ from waiting import WITHIN_S
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = (ROOT / 'README.md', *sorted((ROOT / 'docs').rglob('*.md')))
-_FENCE = re.compile(r'^(```+)(\w*)\n(.*?)^\1$', re.DOTALL | re.MULTILINE)
+_FENCE = re.compile(r'^(```+)(\S*).*?\n(.*?)^\1$', re.DOTALL | re.MULTILINE)
 _INDENTED = re.compile(r'(?:^    .*\n)+', re.MULTILINE)
 _LINK = re.compile(r'\[[^\]]*\]\(([^)#\s]+)[^)]*\)')
 _COMMAND = re.compile(

@@ -33,7 +33,7 @@ NOT_RUN_HERE = {
         'serves until Ctrl-C; tests/graph/test_qos_overrides.py stops it'
     ),
     'ddct campaign docs/examples/robustness': (
-        'takes minutes; test_documentation.py reads its specifications'
+        'takes minutes; test_examples.py reads its specifications'
     ),
     'ddct benchmark mine': 'takes minutes; ddct_bringup/test/benchmark runs a small one',
     'python docs/examples/learn_launch.py': 'takes a minute; tests/nightly/docs learns for less',

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The packaged cases cover what they should, and the packaged rows come out again."""
 
-import re
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +12,6 @@ from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.release import ReleaseRows, columns_kept, release_rows
 from ddct_bringup.benchmark.report.packaged import packaged_tables
 from ddct_bringup.campaign.columns import runs_table, schema_of
-from ddct_bringup.campaign.keys import SCENARIO
 from ddct_bringup.campaign.scored import Scorer
 from ddct_bringup.documents.terminal import text_table
 from ddct_bringup.verdict.limits import packaged_limits
@@ -49,18 +47,6 @@ def test_the_cases_are_all_scenarios_that_stick_with_the_stated_car_and_sensors(
     (sensors,) = spec.values_of('sensors')
     assert sensors.keys() == {'engine_speed', 'shaft_speed', 'vehicle_speed', 'engine_torque'}
     assert spec.controllers == ('pi', 'ls8', 'hinf_sampled', 'mpc_wear')
-
-
-def test_the_page_names_the_scenarios_and_the_number_of_cases() -> None:
-    page = (Path(__file__).parents[3] / 'docs' / 'use' / 'benchmark.md').read_text(
-        encoding='utf-8'
-    )
-    campaign = Cases.packaged().planned
-    for name in campaign.spec.values_of('scenario'):
-        assert f'`{name}`' in page
-    cases = campaign.cases
-    assert f'in {cases} development cases and in {cases} held-out cases' in page
-    assert f'{campaign.samples} samples each' in page
 
 
 def test_a_quick_benchmark_has_the_first_tenth_of_the_cases(release: ReleaseRows) -> None:
@@ -112,11 +98,3 @@ def test_every_controller_of_the_release_stands_in_every_table_with_all_its_runs
         if 'engaged' in table.headers:
             among = 330 if name == 'all' else 30
             assert {shown_runs(table, row) for row in range(len(controllers))} == {among}
-
-
-def test_the_page_has_every_table() -> None:
-    page = Path(__file__).parents[3] / 'docs' / 'use' / 'benchmark.md'
-    marks = re.findall(r'<!-- table: benchmark (\w+) -->', page.read_text(encoding='utf-8'))
-    scenarios = Cases.packaged().whole.values_of(SCENARIO)
-    tables = [name for each in scenarios for name in (each, f'{each}_figures')]
-    assert marks == ['all', 'dominance', *tables]

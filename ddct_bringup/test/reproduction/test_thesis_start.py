@@ -1,8 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Statements of docs/thesis/calibration.md on the start of the thesis's scenario."""
-
-from pathlib import Path
+"""The thesis's scenario does not start in equilibrium."""
 
 import numpy as np
 
@@ -13,11 +11,10 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-PAGE = Path(__file__).resolve().parents[3] / 'docs' / 'thesis' / 'calibration.md'
 SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 
 
-def test_page_states_the_acceleration_and_the_slip_that_the_start_makes():
+def test_the_start_makes_this_acceleration_and_this_slip_after_10_ms():
     start = initial_state(SETTINGS)
     model = driveline_matrices(SETTINGS.scenario.driveline)
     state = start.states
@@ -26,6 +23,4 @@ def test_page_states_the_acceleration_and_the_slip_that_the_start_makes():
     run = run_headless(SETTINGS, 'pi')
     slip = rpm_from_rad_s(run.slip_speed[1])
     twist = rpm_from_rad_s(run.joint_speed[1, 3])
-    text = ' '.join(PAGE.read_text(encoding='utf-8').split())
-    assert f'dw_p/dt = {shaft:.0f} rad/s²'.replace('-', '−') in text
-    assert f'w_d is {slip:.0f} rpm and w_sr {twist:.0f} rpm'.replace('-', '−') in text
+    assert (round(shaft), round(slip), round(twist)) == (-779, 38, -4)

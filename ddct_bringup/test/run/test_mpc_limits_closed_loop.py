@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Limits of the predictive controllers in the loop: their priorities, and soft limits."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from tight_tolerance import tight_tolerance_run
@@ -17,7 +15,6 @@ from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSetting
 
 pytestmark = pytest.mark.slow
 
-PAGE = Path(__file__).parents[3] / 'docs' / 'controllers' / 'mpc.md'
 START = load_scenario('thesis').control_start_step
 AS_DRAWN = ('mpc1', 'mpc2', 'mpc3')
 FULL_INFORMATION = ('measured=speeds', 'load_known=true', 'delay_in_model=true', 'preview=true')
@@ -82,11 +79,11 @@ def test_the_plates_do_not_pass_each_other(name):
 
 
 @pytest.mark.parametrize(
-    ('option', 'sentence'),
-    [((), 'instead of {:.1f}.'), (('lowest_slip_rpm=0',), 'goes {:.1f} rpm')],
+    ('option', 'below'),
+    [((), 6.6), (('lowest_slip_rpm=0',), 0.1)],
 )
-def test_the_plates_pass_each_other_as_far_as_in_scipy_and_on_the_page(option, sentence):
-    """The sentence agrees within 0.01 rpm with scipy's integration of the loop to 1e-10."""
+def test_the_plates_pass_each_other_as_far_as_in_scipy(option, below):
+    """Both agree within 0.01 rpm with scipy's integration of the loop to 1e-10."""
     given = [f'controllers.mpc_preview.{each}' for each in option]
     integrated = tight_tolerance_run(
         RunSettings(KnownSettings(load_scenario('thesis', given))), 'mpc_preview'
@@ -94,7 +91,7 @@ def test_the_plates_pass_each_other_as_far_as_in_scipy_and_on_the_page(option, s
     expected = rpm_from_rad_s(integrated['w_d'][START:].min())
     lowest = rpm_from_rad_s(run('mpc_preview', *option).slip_speed[START:].min())
     assert lowest == pytest.approx(expected, abs=0.01)
-    assert sentence.format(-expected) in PAGE.read_text(encoding='utf-8')
+    assert round(-expected, 1) == below
 
 
 def test_the_slip_of_mpc3_crosses_zero_at_a_limit_of_2_rpm_below_but_not_at_zero():

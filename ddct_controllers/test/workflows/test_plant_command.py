@@ -9,10 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from generator.pages import as_markdown, shown_tables
 
 from ddct_controllers.workflows.design_program import main
-from ddct_controllers.workflows.plant_command import paper_tables
 from ddct_controllers.workflows.plant_on_paper import MATRICES, plant_on_paper
 from ddct_controllers.workflows.plant_text import factored_text
 from ddct_plant.models.driveline_model import driveline_matrices
@@ -114,9 +112,3 @@ def test_a_bad_file_is_refused_before_anything_is_printed(
     printed = capsys.readouterr()
     assert complaint in printed.err
     assert printed.out == ''
-
-
-def test_the_page_shows_todays_numbers() -> None:
-    """Update them by: make docs KINDS=plant."""
-    computed = paper_tables(plant_on_paper(load_scenario('thesis')))
-    assert shown_tables('plant') == as_markdown(computed)

@@ -119,7 +119,7 @@ def test_campaigns_sweeps_report_and_pages_have_it(patched: Path) -> None:
         from ddct_bringup.run.run_base import RunBase
         from ddct_bringup.verdict.limits import packaged_limits
         from ddct_plant.scenario.file import ScenarioFile
-        from generator.score_tables import score_tables
+        from website.tables.score_tables import score_tables
 
         settings = RunBase(ScenarioFile.read('thesis'), {{}}, {{}}, ()).at()
         scores = scored_headless(settings, 'pi', packaged_limits())

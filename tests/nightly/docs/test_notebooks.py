@@ -6,9 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from generator.notebooks import executed, notebooks, pictures_of, read_notebook, texts_of
 from support.documented import ROOT
 from website.notebook_pages import notebook_page
+
+from notebook_outputs.outputs import executed, notebooks, pictures_of, read_notebook, texts_of
 
 pytest.importorskip('nbclient', reason='an extra of the tests')
 EACH = pytest.mark.parametrize('path', notebooks(), ids=lambda path: path.stem)
@@ -22,7 +23,7 @@ from small_benchmark import use_small_release
 use_small_release(Path({place!r}), MonkeyPatch())
 """
 """Code that puts a benchmark of few cases in the place of the packaged one of minutes."""
-MAKE = 'run: make docs KINDS=notebooks'
+MAKE = 'run: python -P -m notebook_outputs'
 
 
 @EACH

@@ -1,8 +1,9 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Compute the tables of the pages by the kinds of their marks."""
+"""The tables of the pages by kind: each is declared in the code, or computed in a second."""
 
 from collections.abc import Callable, Mapping
+from functools import cache
 
 from ddct_controllers.design.analysis.loops import continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.worst_corner import PlantCorners
@@ -29,10 +30,12 @@ from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.program.table import TextTable
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import KnownSettings, RunSettings
-from generator.actuator_tables import other_actuators
-from generator.option_tables import TABLES as OPTION_TABLES
-from generator.score_tables import score_tables
-from generator.tuning_tables import tuning_tables
+from website.tables.actuator_tables import other_actuators
+from website.tables.missing_tables import missing_tables
+from website.tables.option_tables import TABLES as OPTION_TABLES
+from website.tables.parameter_tables import parameter_tables
+from website.tables.score_tables import score_tables
+from website.tables.tuning_tables import tuning_tables
 
 
 def h_infinity_tables() -> Mapping[str, TextTable]:
@@ -59,14 +62,6 @@ def _both_loops(controller: FactoredTransferFunction) -> LoopsEntry:
     )
 
 
-def declared_parameters() -> Mapping[str, TextTable]:
-    """Return the parameters of the nodes."""
-    # Only here: it needs ROS, which the other tables do without.
-    from generator.parameter_tables import parameter_tables
-
-    return parameter_tables()
-
-
 def plant_tables() -> Mapping[str, TextTable]:
     """Return the plant of the scenario `thesis`."""
     return paper_tables(plant_on_paper(load_scenario('thesis')))
@@ -78,26 +73,26 @@ def sampled_loops() -> TextTable:
     return margins_table(frequency_evidence(controller_names(), settings), settings)
 
 
-def tables_of_missing_messages() -> Mapping[str, TextTable]:
-    """Return what nodes do when a message is missing, with the times of the code."""
-    # Only here: the recorder needs ROS, which the other tables do without.
-    from generator.missing_tables import missing_tables
-
-    return missing_tables()
+def _margins() -> Mapping[str, TextTable]:
+    return {'sampled_loops': sampled_loops(), 'other_actuators': other_actuators()}
 
 
-TABLES: Mapping[str, Callable[[], Mapping[str, TextTable]]] = {
+_TABLES: Mapping[str, Callable[[], Mapping[str, TextTable]]] = {
     'options': lambda: OPTION_TABLES,
-    'parameters': declared_parameters,
+    'parameters': parameter_tables,
     'scores': score_tables,
     'plant': plant_tables,
     'loop-shaping': lambda: thesis_tables(thesis_record()),
     'h-infinity': h_infinity_tables,
-    'margins': lambda: {
-        'sampled_loops': sampled_loops(),
-        'other_actuators': other_actuators(),
-    },
+    'margins': _margins,
     'tuning': tuning_tables,
-    'missing': tables_of_missing_messages,
+    'missing': missing_tables,
 }
-"""Functions by kind."""
+KINDS = tuple(_TABLES)
+"""Kinds of tables."""
+
+
+@cache
+def tables_of(kind: str) -> Mapping[str, TextTable]:
+    """Return the tables of a kind by name, computed once."""
+    return _TABLES[kind]()

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The diagrams of docs/thesis/plant.md: the thesis's Figures 1.9 to 1.26 with our names."""
 
-from generator.drawings.diagrams import Place, Signal, box, branch, end, sum_at, svg
+from diagrams.parts import Place, Signal, box, branch, end, sum_at, svg
 
 Diagram = tuple[str, dict[str, Place], list[Signal]]
 

@@ -3,6 +3,7 @@
 """Tables of the packaged tunings, from the `front.json` that `ddct tune` wrote for each."""
 
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 
 from ddct_bringup.documents.terminal import text_table
 from ddct_bringup.tuning.report.document import effects_table, entries_table
@@ -10,9 +11,8 @@ from ddct_bringup.tuning.result import FrontEntry, TuningResult
 from ddct_bringup.tuning.specification.packaged_specs import packaged_specs
 from ddct_plant.files.json_records import read_json
 from ddct_plant.program.table import TextTable
-from generator.pages import DOCS
 
-FOLDER = DOCS / 'examples' / 'tuning'
+FOLDER = Path(__file__).resolve().parents[2] / 'examples' / 'tuning'
 """Folder with the results, by the names of the specifications."""
 
 

@@ -1,7 +1,7 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-Execute the notebooks and keep their outputs: `make docs KINDS=notebooks`.
+Execute the notebooks and keep their outputs.
 
 Outputs stand in the files, so that a reader without Python sees them. Texts and tables are the
 same in every execution, and a test compares them; pictures are kept, not compared. The outputs of
@@ -13,9 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from ddct_plant.base.errors import DdctError
-from generator.pages import DOCS
 
-FOLDER = DOCS / 'notebooks'
+FOLDER = Path(__file__).resolve().parents[2] / 'docs' / 'notebooks'
 KERNEL = {'display_name': 'Python 3', 'language': 'python', 'name': 'python3'}
 VARIES = 'varies'
 """Key of the metadata of a cell whose outputs depend on the code of this release."""
