@@ -107,9 +107,10 @@ def test_a_controller_in_a_process_of_its_own_finds_no_value_of_the_case(tmp_pat
 def test_a_control_process_can_name_no_file_with_a_true_value(tmp_path: Path) -> None:
     settings = settings_with(UNKNOWN_IN_A_SHIFT, 'upshift', duration_s=0.5)
     values = true_values(settings)
-    files = RunPlan(settings, 'pi', 'processes').write_parameter_files(tmp_path, tmp_path)
+    arguments = RunPlan(settings, 'pi', 'processes').write_parameter_files(tmp_path, tmp_path)
     for node in nodes_of(shift=True):
-        *_, file = files.arguments_of(node)
+        given = arguments.of(node)
+        file = given[given.index('--params-file') + 1]
         named = files_named_in(Path(file))
         texts = [each.read_text(encoding='utf-8') for each in named]
         expected = [] if node.path in CONTROL else values
@@ -123,10 +124,10 @@ def test_case_and_known_settings_are_in_the_parameters_of_the_nodes_that_have_th
     tmp_path: Path,
 ) -> None:
     settings = settings_with(UNKNOWN_IN_A_SHIFT, 'upshift', duration_s=0.5)
-    files = RunPlan(settings, 'pi', 'processes').write_parameter_files(tmp_path, tmp_path)
+    arguments = RunPlan(settings, 'pi', 'processes').write_parameter_files(tmp_path, tmp_path)
     of_case = {
         node
-        for file in (files.control, files.plant)
+        for file in (arguments.control, arguments.plant)
         for node, each in yaml.safe_load(file.read_text(encoding='utf-8')).items()
         if 'case' in each['ros__parameters']
     }

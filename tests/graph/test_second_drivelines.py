@@ -3,12 +3,16 @@
 """A second graph with the clock of another is refused; one on nodes that have run says so."""
 
 import os
+import re
+import signal
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
 from samples import sampled
 from support.complaints import assert_one_line
+from support.documented import ROOT
 from support.nodes_by_hand import MODULES, RUN, finish_nodes, start_nodes
 from support.processes import Program, Programs, ros_arguments
 from support.runs import expected, plan
@@ -98,16 +102,36 @@ def test_domains_and_clocks_are_kept_apart() -> None:
 def test_two_graphs_in_one_domain_run_with_a_namespace_and_a_clock_each(
     programs: Programs, tmp_path: Path
 ) -> None:
-    def start(car: str) -> dict[str, Program]:
-        own = ['-r', f'__ns:=/{car}', '-r', f'/clock:=/{car}/clock']
+    """One is a gear shift that `bringup` starts, the other has an engine of a third party."""
 
-        def start_node(module: str, parameters: Mapping[str, object]) -> Program:
-            return programs.fork(module, *ros_arguments(parameters), *own)
+    def names(car: str) -> list[str]:
+        topics = ('clock', 'diagnostics')
+        renamed = [each for name in topics for each in ('-r', f'/{name}:=/{car}/{name}')]
+        return ['-r', f'__ns:=/{car}', *renamed]
 
-        return start_nodes(start_node, list(MODULES), tmp_path / car)
+    def start_node(module: str, parameters: Mapping[str, object]) -> Program:
+        return programs.fork(module, *ros_arguments(parameters), *names('hand'))
 
-    both = [start(car) for car in ('first', 'second')]
-    for nodes in both:
-        finish_nodes(nodes)
-    hashes = {read_bag(tmp_path / car).trajectory.sha256() for car in ('first', 'second')}
-    assert hashes == {expected(RUN).sha256()}
+    others = [name for name in MODULES if name != 'engine']
+    nodes = start_nodes(start_node, others, tmp_path / 'hand')
+    example = str(ROOT / 'docs' / 'examples' / 'own_engine.py')
+    engine = programs.start([sys.executable, example, '--ros-args', *names('hand')])
+    bringup = programs.fork(
+        'ddct_bringup.programs.bringup',
+        *('--scenario', 'upshift', '--single-process', '--out', str(tmp_path / 'shift')),
+        *('--ros-args', *names('shift')),
+    )
+    finish_nodes(nodes)
+    assert bringup.wait() == 0, bringup.errors()
+    engine.send(signal.SIGKILL)  # an example may hang as it leaves the graph
+    for folder, run in (
+        ('hand', RUN),
+        ('shift/pi', plan('pi', scenario='upshift', duration_s=2.5)),
+    ):
+        assert read_bag(tmp_path / folder).trajectory.sha256() == expected(run).sha256()
+
+    (told,) = re.findall(r'^\[INFO\].*', nodes['clutch'].errors(), re.MULTILINE)
+    assert told.endswith(
+        '[hand.clutch]: torque between the plates of a clutch: waits for /hand/actuator/torque'
+    )
+    assert '[INFO]' not in bringup.errors()

@@ -131,7 +131,7 @@ def test_a_domain_without_a_graph_is_reported_once(monkeypatch: pytest.MonkeyPat
         for _ in range(10):
             both.spin()
     assert len(both.printed) == 2
-    assert 'no graph in ROS domain' in both.printed[1]
+    assert 'no graph with /clock in ROS domain' in both.printed[1]
     assert 'ROS_DOMAIN_ID' in both.printed[1]
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ddct_bringup.processes.graph_names import GraphNames
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.run_base import RunBase
 from ddct_controllers.from_python import chosen_from
@@ -49,18 +50,20 @@ def planned(
     controllers: Iterable[Any] | Mapping[str, Any] | str | None,
     layout: str,
     complain: Callable[[str], None],
+    names: GraphNames | None = None,
     **options: Any,
 ) -> list[RunPlan]:
     """
     Return a plan for each controller, given as for `compare`, all with the same options of `run`.
 
     None is every controller that can be built here; `complain` gets a line for each other one.
+    `names` are those of each graph in ROS.
     """
     chosen = controllers_from(controller_names() if controllers is None else controllers)
     settings = run_settings([controller_label(each) for each in chosen], **options)
     if controllers is None:
         chosen = [*working_controllers(settings.known, complain)]
-    return [RunPlan(settings, each, layout) for each in chosen]
+    return [RunPlan(settings, each, layout, names or GraphNames()) for each in chosen]
 
 
 def run_settings(labels: Iterable[str], *options: Any, **given: Any) -> RunSettings:

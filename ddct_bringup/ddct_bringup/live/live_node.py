@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from rclpy.serialization import deserialize_message
+from rclpy.serialization import deserialize_message, serialize_message
 
 from ddct_bringup.bag.run_info import run_info_order
 from ddct_bringup.live.server import LiveServer
@@ -14,11 +14,12 @@ from ddct_bringup.processes.live_process import ALL_TOPICS_RECEIVED, VIEWER_SUBS
 from ddct_plant.bag_file.cdr import stamp_of_cdr
 from ddct_plant.base.timebase import START_NS
 from ddct_plant.graph.node import GraphNode
-from ddct_plant.graph.node_names import name_in_graph
+from ddct_plant.graph.node_names import StatusName, name_in_graph
 from ddct_plant.graph.qos import LIVE_QOS
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     CLOCK,
+    DIAGNOSTICS,
     OFF_GOING_RUN_INFO,
     RECORDER_ACK,
     RUN_INFO,
@@ -69,7 +70,10 @@ class LiveNode(GraphNode):
         self._server.stop()
 
     def _subscribe(self, *, latched: bool) -> None:
-        special: dict[Topic, Callable[[bytes], None]] = {CLOCK: self._on_clock}
+        special: dict[Topic, Callable[[bytes], None]] = {
+            CLOCK: self._on_clock,
+            DIAGNOSTICS: self._on_diagnostics,
+        }
         for topic in (RUN_INFO, OFF_GOING_RUN_INFO):
             special[topic] = partial(self._on_run_info, topic)
         for topic in TOPICS:
@@ -91,6 +95,15 @@ class LiveNode(GraphNode):
             self._views_latched = -1
         self._stamp_ns = stamp
         self._pass_on(CLOCK, cdr)
+
+    def _on_diagnostics(self, cdr: bytes) -> None:
+        """Pass on what nodes of this graph report: other graphs may share the topic."""
+        message = deserialize_message(cdr, DIAGNOSTICS.message_class)
+        names = [StatusName.of(status.name, self.get_namespace()) for status in message.status]
+        if any(name.node for name in names):
+            for status, name in zip(message.status, names, strict=True):
+                status.name = str(name)
+            self._pass_on(DIAGNOSTICS, serialize_message(message))
 
     def _on_run_info(self, topic: Topic, cdr: bytes) -> None:
         node, _ = topic.read(deserialize_message(cdr, topic.message_class))
@@ -123,8 +136,9 @@ class LiveNode(GraphNode):
 
     def _check_for_graph(self) -> None:
         self._search.cancel()
-        if not self.count_publishers(CLOCK.name):
+        clock = self.resolve_topic_name(CLOCK.name)
+        if not self.count_publishers(clock):
             self._print(
-                f'no graph in ROS domain {self._domain} so far: '
-                'start one with the same ROS_DOMAIN_ID'
+                f'no graph with {clock} in ROS domain {self._domain} so far: '
+                'start one with the same ROS_DOMAIN_ID and names'
             )

@@ -3,9 +3,10 @@
 """Nodes of the graph: their modules, namespaces, arguments, start order and timeout."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from ddct_bringup.processes.graph_names import ROS_ARGUMENTS, GraphNames
 from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.graph.node_reports import CONTROL_NODES
 from ddct_plant.shift.roles import OFF_GOING
@@ -106,21 +107,24 @@ def nodes_of_process(arguments: Sequence[str]) -> list[NodeSpec]:
 
 
 @dataclass(frozen=True)
-class ParameterFiles:
-    """ROS 2 parameter files of a run: nodes that control cannot name what they do not know."""
+class NodeArguments:
+    """
+    ROS arguments of the nodes of a run: their parameter files and names.
+
+    Files of nodes that control cannot name what these do not know.
+    """
 
     control: Path
     """File of the nodes that have the known settings alone."""
     plant: Path
     """File of the plant and the recorder, which have the case too."""
+    names: GraphNames = field(default_factory=GraphNames)
+    """Namespace of the graph, and topics with other names."""
 
-    def arguments_of(self, node: NodeSpec) -> list[str]:
-        """Return the arguments by which the process of a node reads its parameters."""
+    def of(self, node: NodeSpec) -> list[str]:
+        """Return the ROS arguments of the process of a node."""
+        files = [self.control if node.controls else self.plant]
         if node.name == ALL_NODES:
-            return ros_arguments(self.control, self.plant)
-        return ros_arguments(self.control if node.controls else self.plant)
-
-
-def ros_arguments(*files: Path) -> list[str]:
-    """Return the arguments by which nodes read their parameters from files."""
-    return ['--ros-args', *(each for file in files for each in ('--params-file', str(file)))]
+            files = [self.control, self.plant]
+        parameters = [each for file in files for each in ('--params-file', str(file))]
+        return [ROS_ARGUMENTS, *parameters, *self.names.remaps(node.namespace)]

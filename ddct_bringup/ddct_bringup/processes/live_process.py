@@ -10,6 +10,7 @@ from contextlib import contextmanager
 
 from ddct_bringup.processes.fork_server import start_processes
 from ddct_bringup.processes.forked import Forked
+from ddct_bringup.processes.graph_names import ROS_ARGUMENTS, GraphNames
 from ddct_bringup.processes.supervisor import POLL_S
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.domain import own_domain
@@ -61,15 +62,18 @@ class LiveView(Forked):
 
 
 @contextmanager
-def live_view(port: int) -> Iterator[LiveView]:
+def live_view(port: int, names: GraphNames) -> Iterator[LiveView]:
     """
     Reserve a domain for one run, serve it on a port, and yield once a viewer shows a topic.
+
+    `names` are those of its graph.
 
     Port 0 takes a free one. A run is over in seconds: it waits for its viewer. Raise DdctError if
     it cannot be served.
     """
     with own_domain():
-        view = LiveView('ddct_bringup.programs.live', '--port', str(port))
+        given = ['--port', str(port), ROS_ARGUMENTS, *names.remaps()]
+        view = LiveView('ddct_bringup.programs.live', *given)
         try:
             start_processes([view.process])
             view.begin()

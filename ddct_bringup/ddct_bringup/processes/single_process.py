@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 
 from rclpy.context import Context
 
+from ddct_bringup.processes.graph_names import ROS_ARGUMENTS
 from ddct_bringup.processes.graph_nodes import ALL_NODES, NodeSpec, nodes_of_process
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.arguments import init_ros
@@ -54,7 +55,7 @@ def run_single_process(
         for spec in specs:
             if stopped():  # it beats too
                 raise KeyboardInterrupt
-            nodes.append(_build(spec, context))
+            nodes.append(_build(spec, context, nodes))
         _spin(nodes, context, stopped)
     finally:
         while nodes:
@@ -64,10 +65,15 @@ def run_single_process(
         gc.collect()
 
 
-def _build(spec: NodeSpec, context: Context) -> GraphNode:
+def _build(spec: NodeSpec, context: Context, others: Sequence[GraphNode]) -> GraphNode:
+    """Return a node; one with a namespace has it within that of the others."""
+    arguments = None
+    if spec.namespace:
+        graph = others[0].get_namespace().rstrip('/')
+        arguments = [ROS_ARGUMENTS, '-r', f'__ns:={graph}/{spec.namespace}']
     node_class = getattr(importlib.import_module(spec.module), spec.class_name)
     try:
-        node: GraphNode = node_class(context=context, namespace=spec.namespace or None)
+        node: GraphNode = node_class(context=context, cli_args=arguments)
     except DdctError as error:
         raise DdctError(f'{spec.title}: {error}') from error
     return node

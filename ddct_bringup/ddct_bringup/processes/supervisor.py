@@ -50,8 +50,6 @@ class Node(Forked):
         """Whether it had to be killed because it did not end after the other signals."""
         self._paused_s = 0.0
         given = [*spec.arguments, *arguments]
-        if spec.namespace:
-            given += ['-r', f'__ns:=/{spec.namespace}']
         super().__init__(spec.module, *given, name=spec.path, patience=PATIENCE)
 
     def check(self, elapsed_s: float) -> None:
@@ -85,7 +83,8 @@ class Node(Forked):
         return f'{self._title} {self._end()}; its log is {self.log}'
 
     def _end(self) -> str:
-        code, lines = self.code(), self.lines()
+        code = self.code()
+        lines = [line for line in self.lines() if not line.startswith('[INFO]')]
         call = last_call(self.calls()) if self.announced_code() is None else ''
         if self.killed:
             return f'did not stop on signals{call} and was killed'

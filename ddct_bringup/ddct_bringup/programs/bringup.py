@@ -32,6 +32,7 @@ examples:
   ddct bringup --mode realtime --out runs/realtime       100 Hz on the wall clock
   ddct bringup --headless --out runs/quick               the same numbers without a graph
   ddct bringup --mode realtime --live --out runs/live    watch it in Foxglove
+  ddct bringup --out runs/car --ros-args -r __ns:=/car -r /clock:=/car/clock     in a namespace
 
 The bag is DIR/<controller>/<controller>_0.mcap. A run that fails leaves what it recorded
 in DIR/<controller>.partial. ROS_DOMAIN_ID is respected; without it a free domain is taken.
@@ -44,7 +45,8 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def _bringup(argv: list[str]) -> int:
-    options = _parser().parse_args(argv)
+    own, names = shell.split_ros_arguments(argv)
+    options = _parser().parse_args(own)
     if options.list:
         shell.print_choices()
         return 0
@@ -57,6 +59,7 @@ def _bringup(argv: list[str]) -> int:
         [options.controller],
         options.layout,
         _complain,
+        names,
         **settings_given(options),
     )
     shell.print_adjusted(plan.settings.scenario)
@@ -65,7 +68,7 @@ def _bringup(argv: list[str]) -> int:
 
     def execute(plan: 'shell.RunPlan', folder: Path) -> 'shell.Recording | None':
         live = options.live is not None
-        with shell.live_view(options.live) if live else nullcontext() as view:
+        with shell.live_view(options.live, names) if live else nullcontext() as view:
             return shell.run_with_progress(plan, folder, live=view)
 
     run = shell.keep_run(plan, options.out, limits, execute, overwrite=options.overwrite)

@@ -46,7 +46,8 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def _compare(argv: list[str]) -> int:
-    options = _parser().parse_args(argv)
+    own, names = shell.split_ros_arguments(argv)
+    options = _parser().parse_args(own)
     if options.list:
         shell.print_choices()
         return 0
@@ -62,6 +63,7 @@ def _compare(argv: list[str]) -> int:
         None if everyone else shell.controllers_of(options.controllers),
         options.layout,
         _complain,
+        names,
         **settings_given(options),
     )
     shell.print_adjusted(plans[0].settings.scenario)

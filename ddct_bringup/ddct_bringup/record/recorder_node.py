@@ -89,6 +89,8 @@ class RecorderNode(GraphNode):
         self._second_node: DdctError | None = None
         self._subscribe_all()
         self.publish_run_info(records=True)
+        nodes = ', '.join(name for name in recording.nodes if name != self.get_name())
+        self.log_start(RUN_INFO, then=f' of {nodes}, then every tick, for {recording.folder}')
         self._publish_settings()
         self._patience = self.every(PATIENCE_S, self._warn_of_missing_nodes)
 

@@ -102,7 +102,8 @@ def execute(
     work = folder / WORK_FOLDER
     try:
         work.mkdir()
-        with own_domain() as domain, sole_graph(domain, CLOCK.resolved_name):
+        clock = plan.names.resolved(CLOCK.resolved_name)
+        with own_domain() as domain, sole_graph(domain, clock):
             if plan.layout == 'processes':
                 _execute_processes(plan, folder, work, stopped, live)
             else:
@@ -152,8 +153,8 @@ def _execute_processes(
     stopped: Callable[[], bool],
     live: 'processes.LiveView | None',
 ) -> None:
-    files = plan.write_parameter_files(folder, work)
-    with processes.Supervisor(work, files.arguments_of, stopped) as supervisor:
+    arguments = plan.write_parameter_files(folder, work)
+    with processes.Supervisor(work, arguments.of, stopped) as supervisor:
         nodes = nodes_of(shift=plan.settings.shift)
         supervisor.start([node for node in nodes if node is not RECORDER or not live])
         if live:
@@ -173,13 +174,14 @@ def _execute_single_process(
     plan: RunPlan, folder: Path, work: Path, stopped: Callable[[], bool]
 ) -> None:
     """Run all nodes in this process, or in one of their own where the controller may end it."""
-    files, shift = plan.write_parameter_files(folder, work), plan.settings.shift
+    arguments, shift = plan.write_parameter_files(folder, work), plan.settings.shift
     whole = all_nodes(shift=shift)
     if not compiled_code(plan.controller):
-        arguments = files.arguments_of(whole)
-        processes.run_single_process(nodes_of(shift=shift), arguments, stopped)
+        # They print here: warnings alone.
+        given = [*arguments.of(whole), '--log-level', 'warn']
+        processes.run_single_process(nodes_of(shift=shift), given, stopped)
         return
-    with processes.Supervisor(work, files.arguments_of, stopped) as supervisor:
+    with processes.Supervisor(work, arguments.of, stopped) as supervisor:
         supervisor.start([whole])
         supervisor.wait_for(ALL_NODES)
 

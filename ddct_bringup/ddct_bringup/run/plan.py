@@ -3,10 +3,11 @@
 """Plan of one run: settings, controller, process layout and node parameters."""
 
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S, ParameterFiles, nodes_of
+from ddct_bringup.processes.graph_names import ROS_ARGUMENTS, GraphNames
+from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S, NodeArguments, nodes_of
 from ddct_controllers.architecture import loop_needs
 from ddct_controllers.handover.laws import make_handover
 from ddct_controllers.registry import Chosen, controller_label
@@ -37,6 +38,8 @@ class RunPlan:
     """Controller to run; in a graph a name of the registry or the path of a controller file."""
     layout: str = 'processes'
     """Process layout, one of LAYOUTS."""
+    names: GraphNames = field(default_factory=GraphNames)
+    """Names of the graph in ROS, which change nothing in its bag."""
 
     def __post_init__(self) -> None:
         """Raise DdctError for a plan that would fail in the graph."""
@@ -47,6 +50,12 @@ class RunPlan:
             make_handover(self.settings.known)
         if self.layout == 'headless':
             require_headless(self.settings)
+            if self.names != GraphNames():
+                raise ParameterError(
+                    f'{ROS_ARGUMENTS} names nodes and topics, which --headless does without: drop '
+                    'one of them',
+                    key=ROS_ARGUMENTS,
+                )
         else:
             if not isinstance(self.controller, str):
                 raise ParameterError(
@@ -104,8 +113,8 @@ class RunPlan:
             write_json(file, part)
         return files
 
-    def write_parameter_files(self, folder: Path, work: Path) -> ParameterFiles:
-        """Write `node_parameters` as ROS 2 parameter files below `work`, and return them."""
+    def write_parameter_files(self, folder: Path, work: Path) -> NodeArguments:
+        """Write `node_parameters` as ROS 2 parameter files below `work`; return the arguments."""
         contents: dict[str, dict[str, object]] = {name: {} for name in SIDES}
         for node, parameters in self.node_parameters(folder, work).items():
             every = node == '*'
@@ -116,7 +125,7 @@ class RunPlan:
         files = [work / name / 'parameters.yaml' for name in SIDES]
         for file, content in zip(files, contents.values(), strict=True):
             file.write_text(dump_yaml(content), encoding='utf-8')
-        return ParameterFiles(*files)
+        return NodeArguments(*files, self.names)
 
 
 def require_headless(settings: RunSettings) -> None:

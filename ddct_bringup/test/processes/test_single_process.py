@@ -89,7 +89,7 @@ def test_the_process_of_all_nodes_runs_those_of_the_run(shift):
 
 def test_an_interruption_ends_the_run_before_the_next_node_is_built(monkeypatch, closed):
     monkeypatch.setattr(single_process, 'init_ros', lambda *_: None)
-    monkeypatch.setattr(single_process, '_build', lambda spec, _: FakeNode(spec.name, closed))
+    monkeypatch.setattr(single_process, '_build', lambda spec, *_: FakeNode(spec.name, closed))
     stops = iter([False, False, True])
     with pytest.raises(KeyboardInterrupt):
         single_process.run_single_process(GRAPH_NODES, [], lambda: next(stops))

@@ -18,7 +18,8 @@ from waiting import WITHIN_S, wait_until
 
 from ddct_bringup.processes import forked, shared_memory, supervisor
 from ddct_bringup.processes.fork_server import server_pid, stop_server
-from ddct_bringup.processes.graph_nodes import NodeSpec
+from ddct_bringup.processes.graph_names import GraphNames
+from ddct_bringup.processes.graph_nodes import NodeArguments, NodeSpec
 from ddct_bringup.processes.supervisor import Node, Supervisor
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program.supervision import Patience
@@ -64,7 +65,8 @@ def processes(
 ) -> Iterator[Make]:
     """Return a function that makes a supervisor of programs with these lines, by node name."""
     monkeypatch.setattr(supervisor, 'CHECK_PERIOD_S', 0.05)
-    made = Supervisor(tmp_path, lambda node: ())
+    arguments = NodeArguments(Path('control'), Path('plant'), GraphNames('/car'))
+    made = Supervisor(tmp_path, arguments.of)
 
     def make(namespace: str = '', **lines: tuple[str, str]) -> Supervisor:
         programs = {
@@ -182,7 +184,7 @@ def test_a_node_in_a_namespace_starts_there_and_has_its_full_name_in_errors_and_
     assert reason(nodes) == f'node off_going/load was killed by SIGKILL; its log is {node.log}'
     nodes.__exit__()
     assert node.log.name == 'off_going_load.log'
-    assert '-r __ns:=/off_going' in node.log.read_text(encoding='utf-8')
+    assert '-r __ns:=/car/off_going' in node.log.read_text(encoding='utf-8')
     nodes._nodes.clear()
 
 

@@ -98,7 +98,8 @@ def sole_graph(domain: int, clock: str) -> Iterator[None]:
         except OSError as error:
             raise DdctError(
                 f'another graph runs on this machine with {clock} in ROS domain {domain}: wait '
-                'for its end, or use another ROS_DOMAIN_ID'
+                'for its end, use another ROS_DOMAIN_ID, or give this one names of its own, as '
+                'with --ros-args -r __ns:=/car -r /clock:=/car/clock'
             ) from error
         yield
 

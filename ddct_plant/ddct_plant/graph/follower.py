@@ -53,10 +53,12 @@ class FollowerNode(GraphNode):
         for topic in inputs:
             read = (readers or {}).get(topic)
             self.subscribe_values(topic, partial(self._receive, topic.name), read)
-        if not lockstep and not any(topic.is_tick for topic in inputs):
+        ticks = () if lockstep or any(topic.is_tick for topic in inputs) else (CLOCK,)
+        for topic in ticks:
             self.subscribe_values(
-                CLOCK, lambda stamp, _: self.on_tick(step_of_stamp(stamp), stamp)
+                topic, lambda stamp, _: self.on_tick(step_of_stamp(stamp), stamp)
             )
+        self.log_start(*inputs, *ticks)
 
     @abstractmethod
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:

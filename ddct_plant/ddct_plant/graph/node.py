@@ -16,7 +16,7 @@ from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import require_known
 from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.graph.node_names import topic_in_graph
-from ddct_plant.graph.node_reports import CASE, KNOWN, TWO_INPUT, run_info_pairs
+from ddct_plant.graph.node_reports import ABOUT, CASE, KNOWN, TWO_INPUT, run_info_pairs
 from ddct_plant.graph.output import Output
 from ddct_plant.graph.qos import (
     LOOP_QOS,
@@ -120,6 +120,11 @@ class GraphNode(Node):
         """Publish pairs of this node, latched and stamped t_0."""
         name = self.get_fully_qualified_name()
         Output(self, topic).fill(stamp_of_step(0), pairs.items(), name=name).publish()
+
+    def log_start(self, *inputs: Topic, then: str = '') -> None:
+        """Log once what this node is, the topics that it waits for as ROS has them, and `then`."""
+        names = ', '.join(self.resolve_topic_name(topic.name) for topic in inputs)
+        self.get_logger().info(f'{ABOUT[self._kind]}: waits for {names}{then}')
 
     def _compare_settings(self, ours: Mapping[str, str], message: Any) -> None:
         """Raise DdctError where settings or other values of this node are not the recorder's."""

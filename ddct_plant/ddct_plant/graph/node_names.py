@@ -46,9 +46,14 @@ class StatusName(NamedTuple):
 
     @classmethod
     def of(cls, name: str, namespace: str = '/') -> 'StatusName':
-        """Return the parts of a name, the node relative to the namespace of its graph."""
+        """
+        Return the parts of a name, the node relative to the namespace of its graph.
+
+        A node outside of the namespace is none of the graph: the name then has no node.
+        """
         node, separator, what = name.rpartition(': ')
-        if not separator:
+        inside = f'{namespace.rstrip("/")}/'
+        if not separator or (node.startswith('/') and not node.startswith(inside)):
             return cls('', name)
         return cls(name_in_graph(node, namespace), separator + what)
 

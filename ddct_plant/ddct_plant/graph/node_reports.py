@@ -46,7 +46,7 @@ _UPDATE_TIMES = 'update_times_us'
 _LATENESS_SAMPLES, _LATENCY_SAMPLES = 'tick_lateness_us', 'latency_us'
 
 
-_ABOUT = {
+ABOUT = {
     'engine': 'torque that the engine delivers',
     'load': 'resistance of the road at the wheels',
     'clutch': 'torque between the plates of a clutch',
@@ -62,7 +62,7 @@ _ABOUT = {
 
 def run_info_pairs(name: str, own: Mapping[str, str] | None = None) -> Pairs:
     """Return the `run_info` of the node of this name: what it is, its version, `own` pairs."""
-    return {'about': _ABOUT[name], 'version': package_version(), **(own or {})}
+    return {'about': ABOUT[name], 'version': package_version(), **(own or {})}
 
 
 def engine_info(two_input: bool, request_timeout_s: float = REQUEST_TIMEOUT_S) -> Pairs:

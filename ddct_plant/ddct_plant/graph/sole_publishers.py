@@ -184,6 +184,7 @@ class SolePublishers:
         if self._listener is None:
             self._listener = Node(
                 'sole_publishers',
+                namespace=self._node.get_namespace(),
                 context=self._node.context,
                 use_global_arguments=False,
                 enable_rosout=False,

@@ -69,9 +69,10 @@ class ActuatorNode(FollowerNode):
         if not self._has_ticks and topic != CLOCK.name and stamp > START_NS:
             self._requests_without_clock += 1
             if self._actuator.watch.too_long(0, self._requests_without_clock):
+                clock = self.resolve_topic_name(CLOCK.name)
                 raise DdctError(
-                    f'at stamp {stamp} ns: {self._request} comes without {CLOCK.name}, by '
-                    f'which the fail-safe sees that requests stop: publish {CLOCK.name} '
+                    f'at stamp {stamp} ns: {self._request} comes without {clock}, by '
+                    f'which the fail-safe sees that requests stop: publish {clock} '
                     '(rosgraph_msgs/Clock) with the stamp of every tick'
                 )
         return super().admits(topic, stamp)

@@ -126,11 +126,14 @@ class DrivelineNode(GraphNode):
 
     def _subscribe_to_replies(self) -> None:
         rows = len(CLUTCH_TORQUE.signals_in(self._run))
+        acknowledged = (RECORDER_ACK,) if self.plan.recorder else ()
         for topic in self._torques:
             read = partial(topic.read, joints=rows) if topic in self._clutches else None
             self.subscribe_values(topic, partial(self._receive, topic), read)
-        if self.plan.recorder:
-            self.subscribe_values(RECORDER_ACK, partial(self._receive, RECORDER_ACK))
+        for topic in acknowledged:
+            self.subscribe_values(topic, partial(self._receive, topic))
+        clock = self.resolve_topic_name(CLOCK.name)
+        self.log_start(*self._torques, *acknowledged, then=f' after each tick on {clock}')
 
     def _receive(self, topic: Topic, stamp: int, reply: Any) -> None:
         # With two publishers no clutch torque counts, so that the clutch opens.

@@ -44,3 +44,4 @@ def test_the_name_of_a_status_is_its_node_and_what_it_describes():
     assert (name, str(name)) == (('/driveline', ': ticks'), '/driveline: ticks')
     assert StatusName.of('driveline: ticks') == StatusName('/driveline', ': ticks')
     assert StatusName.of('temperature') == StatusName('', 'temperature')
+    assert StatusName.of('/driveline: ticks', '/car7').node == '', 'of a graph without namespace'

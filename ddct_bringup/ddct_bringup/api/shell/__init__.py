@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from ddct_bringup.floor.front_chart import front_chart
     from ddct_bringup.live.live_node import LiveNode
     from ddct_bringup.processes.fork_server import start_server
+    from ddct_bringup.processes.graph_names import split_ros_arguments
     from ddct_bringup.processes.live_process import live_view
     from ddct_bringup.report.page import report_page
     from ddct_bringup.reproduction.figures import command as figures_command

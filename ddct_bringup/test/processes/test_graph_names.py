@@ -1,0 +1,39 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Names of a graph: remaps that mean the same for every node, and no others."""
+
+import pytest
+from refusals import refused
+
+from ddct_bringup.processes.graph_names import GraphNames, split_ros_arguments
+from ddct_plant.base.errors import ParameterError
+
+CAR = ['-r', '__ns:=/car', '--remap', '/clock:=/car/clock']
+
+
+def test_remaps_name_the_graph_and_its_off_going_side():
+    own, names = split_ros_arguments(['--out', 'a', '--ros-args', *CAR, '--', '--overwrite'])
+    assert own == ['--out', 'a', '--overwrite']
+    assert names.resolved('/clock') == '/car/clock'
+    assert names.remaps() == ['-r', '__ns:=/car', '-r', '/clock:=/car/clock']
+    assert names.remaps('off_going')[1] == '__ns:=/car/off_going'
+    assert GraphNames().remaps('off_going') == ['-r', '__ns:=/off_going']
+    assert split_ros_arguments(['--out', 'a']) == (['--out', 'a'], GraphNames())
+
+
+@pytest.mark.parametrize(
+    'arguments',
+    [
+        ['-p', 'wear_gain:=0.8'],
+        ['-r'],
+        ['-r', '__ns:=car'],
+        ['-r', '__node:=/mine'],
+        ['-r', 'clutch/torque:=/mine'],
+        ['-r', '/clock:=clock'],
+        ['-r', '/clock'],
+        ['-r', '/clock:=/car//clock'],
+    ],
+)
+def test_other_ros_arguments_are_refused(arguments):
+    with refused(ParameterError, '--ros-args'):
+        split_ros_arguments(['--ros-args', *arguments])
