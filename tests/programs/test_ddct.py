@@ -178,7 +178,8 @@ def test_a_node_without_ros_names_what_is_missing_and_the_page_to_read(
     assert ddct.main(['extra']) == 1
     assert capsys.readouterr().err == (
         'ddct: the graph and its nodes need ROS 2, and its package rclpy is not installed: '
-        'run headless, or set ROS up as docs/use/setup.md tells\n'
+        'run headless, or set ROS up as docs/use/setup.md tells, from wheels on x86-64 Linux or '
+        'from apt on Ubuntu 24.04\n'
     )
 
 

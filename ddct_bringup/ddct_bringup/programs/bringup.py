@@ -45,7 +45,7 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def _bringup(argv: list[str]) -> int:
-    own, names = shell.split_ros_arguments(argv)
+    own, graph = shell.split_ros_arguments(argv)
     options = _parser().parse_args(own)
     if options.list:
         shell.print_choices()
@@ -59,7 +59,7 @@ def _bringup(argv: list[str]) -> int:
         [options.controller],
         options.layout,
         _complain,
-        names,
+        graph,
         **settings_given(options),
     )
     shell.print_adjusted(plan.settings.scenario)
@@ -68,7 +68,7 @@ def _bringup(argv: list[str]) -> int:
 
     def execute(plan: 'shell.RunPlan', folder: Path) -> 'shell.Recording | None':
         live = options.live is not None
-        with shell.live_view(options.live, names) if live else nullcontext() as view:
+        with shell.live_view(options.live, graph) if live else nullcontext() as view:
             return shell.run_with_progress(plan, folder, live=view)
 
     run = shell.keep_run(plan, options.out, limits, execute, overwrite=options.overwrite)

@@ -46,7 +46,7 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def _compare(argv: list[str]) -> int:
-    own, names = shell.split_ros_arguments(argv)
+    own, graph = shell.split_ros_arguments(argv)
     options = _parser().parse_args(own)
     if options.list:
         shell.print_choices()
@@ -63,7 +63,7 @@ def _compare(argv: list[str]) -> int:
         None if everyone else shell.controllers_of(options.controllers),
         options.layout,
         _complain,
-        names,
+        graph,
         **settings_given(options),
     )
     shell.print_adjusted(plans[0].settings.scenario)

@@ -122,10 +122,10 @@ class RunPlan:
             controls = name_in_graph(node) in CONTROL_NODES
             for name in SIDES if every else (CONTROL,) if controls else (PLANT,):
                 contents[name] |= section
-        files = [work / name / 'parameters.yaml' for name in SIDES]
-        for file, content in zip(files, contents.values(), strict=True):
-            file.write_text(dump_yaml(content), encoding='utf-8')
-        return NodeArguments(*files, self.names)
+        files = {name: work / name / 'parameters.yaml' for name in SIDES}
+        for name, content in contents.items():
+            files[name].write_text(dump_yaml(content), encoding='utf-8')
+        return NodeArguments(files[CONTROL], files[PLANT], self.names)
 
 
 def require_headless(settings: RunSettings) -> None:

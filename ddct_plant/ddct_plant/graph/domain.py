@@ -33,7 +33,8 @@ def require_ros() -> None:
     if importlib.util.find_spec('rclpy') is None:
         raise DdctError(
             'the graph and its nodes need ROS 2, and its package rclpy is not installed: run '
-            'headless, or set ROS up as docs/use/setup.md tells'
+            'headless, or set ROS up as docs/use/setup.md tells, from wheels on x86-64 Linux or '
+            'from apt on Ubuntu 24.04'
         )
     if os.environ.get(SECURITY) == 'true' and os.environ.get(STRATEGY) != 'Enforce':
         raise DdctError(
