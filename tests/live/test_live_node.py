@@ -22,7 +22,7 @@ from ddct_bringup.live import live_node
 from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.graph.qos import LATCHED_QOS, LOOP_QOS
 from ddct_plant.graph.spin import make_executor
-from ddct_plant.signals.topics import CLOCK, RUN_INFO
+from ddct_plant.signals.topics import CLOCK, DIAGNOSTICS, RUN_INFO
 
 pytestmark = pytest.mark.usefixtures('extras')
 
@@ -50,9 +50,11 @@ class Served:
 
 
 @contextmanager
-def served() -> Iterator[Served]:
+def served(*arguments: str) -> Iterator[Served]:
     context = Context()
-    rclpy.init(args=[], context=context, signal_handler_options=SignalHandlerOptions.NO)
+    rclpy.init(
+        args=list(arguments), context=context, signal_handler_options=SignalHandlerOptions.NO
+    )
     both = Served(context)
     try:
         yield both
@@ -124,6 +126,20 @@ def test_a_graph_sends_nothing_without_a_viewer() -> None:
             wait_until(lambda: both.spin() and clock.get_subscription_count() == 1, 'the match')
 
 
+def test_diagnostics_of_a_graph_in_a_namespace_have_the_names_that_the_layout_shows() -> None:
+    with served('--ros-args', '-r', '__ns:=/car', '-r', '/clock:=/car/clock') as both:
+        diagnostics = both.graph.create_publisher(DiagnosticArray, '/diagnostics', LOOP_QOS)
+        with Viewer(both.url) as viewer:
+            wait_until(
+                lambda: both.spin() and diagnostics.get_subscription_count() == 1, 'the match'
+            )
+            for name in ('/driveline: ticks', '/car70/driveline: ticks', '/car/driveline: ticks'):
+                diagnostics.publish(DIAGNOSTICS.message(START_NS, [], name=name))
+            wait_until(lambda: both.spin() and bool(viewer.messages['/diagnostics']), 'a status')
+    shown = [message.status[0].name for _, message in viewer.decoded('/diagnostics')]
+    assert shown == ['/driveline: ticks']
+
+
 def test_a_domain_without_a_graph_is_reported_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(live_node, '_PATIENCE_S', 0.05)
     with served() as both:
@@ -137,7 +153,7 @@ def test_a_domain_without_a_graph_is_reported_once(monkeypatch: pytest.MonkeyPat
 
 def test_a_running_graph_is_not_reported_as_absent(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(live_node, '_PATIENCE_S', 0.5)
-    with served() as both:
+    with served('--ros-args', '-r', '/clock:=/car/clock') as both:
         both.graph.create_publisher(Clock, '/clock', LOOP_QOS)
         for _ in range(50):
             both.spin()
