@@ -5,7 +5,7 @@
 import json
 import os
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -57,7 +57,7 @@ _ROLLS = r'speed|spd|geschw|geschwindigkeit|v|vel|kmh|rpm|drehzahl|n|w|omega'
 _TORQUE_WORDS = r'torque|trq|tq|tor|moment|md'
 _TORQUE = rf'{_TORQUE_WORDS}|m|t'
 _ENGINE = r'engine|eng|motor|mot|crank|crankshaft|ice'
-_CLUTCH = r'clutch|clu|cl|kupplung|kup|k1|k2|c1|c2'
+_CLUTCH = r'clutch\d?|clu|cl|kupplung\d?|kup\d?|k1|k2|c1|c2'
 _ASKED = r'request|req|demand|dem|soll|target|tgt|desired|des|cmd|command|setpoint|ref|reference'
 _NAMES: Mapping[str, _Words] = {
     TIME: _Words((r'time|zeit|t|timestamp|timestamps|zeitpunkt',)),
@@ -72,12 +72,13 @@ _NAMES: Mapping[str, _Words] = {
     'engine_torque': _Words((_ENGINE, _TORQUE), f'{_ASKED}|{_CLUTCH}|friction|loss'),
     'engine_speed': _Words((_ENGINE, _SPEED), f'{_ASKED}|idle|{_TORQUE_WORDS}'),
     'shaft_speed': _Words(
-        (r'shaft|input|inp|primary|welle|eing|eingang|eingangswelle|getriebeeingang', _SPEED),
+        (r'shaft|input|inp|primary|welle|ein|eing|eingang|eingangswelle|getriebeeingang', _SPEED),
         f'{_ASKED}|output|engine|motor|wheel|{_TORQUE_WORDS}',
     ),
     'wheel_speed': _Words((r'wheel|whl|rad', _ROLLS), f'{_ASKED}|vehicle'),
     'vehicle_accel': _Words(
-        (r'accel|acc|acceleration|beschl|beschleunigung|ax',), f'{_ASKED}|pedal|lateral|lat|y'
+        (r'accel|acc|acceleration|beschl|beschleunigung|ax|laengs|längs',),
+        f'{_ASKED}|pedal|lateral|lat|y|v|speed',
     ),
     'vehicle_speed': _Words(
         (r'vehicle|veh|car|fahrzeug|fzg|v', r'speed|spd|geschw|v|kmh|vel|x|fzg'),
@@ -96,9 +97,15 @@ class Guess:
     columns: ColumnMap
     remarks: Mapping[str, str]
     """By quantity what to check, for those whose unit nothing states."""
+    left: Sequence[str] = ()
+    """Columns that are taken for no quantity."""
 
-    def text(self, log: str, folder: Path) -> str:
-        """Return the map for a folder in YAML, a line for each quantity, with remarks."""
+    def text(self, log: str, folder: Path, needed: Sequence[str] = ()) -> str:
+        """
+        Return the map for a folder in YAML, a line for each quantity, with remarks.
+
+        For each `needed` quantity without a column there is a line to be completed, a comment.
+        """
         lines = [f'# Guessed from {log}: correct it, and give it as --columns.']
         if self.columns.bus is not None:
             bus = os.path.relpath(self.columns.bus, folder)
@@ -115,6 +122,15 @@ class Guess:
             parts = (f'{key}: {json.dumps(v, ensure_ascii=False)}' for key, v in given.items())
             remark = f'   # {self.remarks[name]}' if name in self.remarks else ''
             lines.append(f'  {name}: {{{", ".join(parts)}}}{remark}')
+        missing = [name for name in needed if name not in self.columns.columns]
+        for name in missing:
+            unit = _OF_SI[QUANTITIES[name].unit][0]
+            lines.append(
+                f'#  {name}: {{column: "?", unit: "{unit}"}}   # needed: put in its column'
+            )
+        if missing and self.left:
+            left = (json.dumps(each, ensure_ascii=False) for each in self.left)
+            lines.append(f'# Columns that are not taken: {", ".join(left)}')
         return '\n'.join(lines)
 
 
@@ -143,7 +159,7 @@ def guessed_columns(
         columns[name], remark = _column(source, name, found[name], stated, radius_m, full_n_m)
         if remark:
             remarks[name] = remark
-    return Guess(ColumnMap(columns, {}, bus=bus), remarks)
+    return Guess(ColumnMap(columns, {}, bus=bus), remarks, [*left])
 
 
 def _column(
@@ -160,8 +176,8 @@ def _column(
     if not unit:
         unit, remark = _by_values(source, names[0], si_unit)
     if si_unit == 'rad/s' and unit in _OF_SI['m/s']:
-        why = 'radius_m is the wheel radius of the car: whoever computed the speed had his own'
-        return LogColumn(names, unit, radius_m=radius_m), why
+        why = 'radius_m is that of the car: put in what the control unit computes with'
+        return LogColumn(names, unit, radius_m=float(f'{radius_m:.5g}')), why
     if unit == '%':
         return LogColumn(names, unit, full=full_n_m), 'full is the largest torque of the car'
     return LogColumn(names, unit), remark

@@ -105,9 +105,11 @@ def read_log(path: Path, columns: ColumnMap, needed: Sequence[str] = ()) -> Meas
 
 
 def _read_mapped_log(path: Path, columns: ColumnMap, needed: Sequence[str]) -> MeasuredLog:
-    for name in needed:
-        if name not in columns.columns:
-            raise ParameterError(f'{path}: the column map has no {name}: add columns.{name}')
+    if missing := [name for name in needed if name not in columns.columns]:
+        added = ', '.join(f'columns.{name}' for name in missing)
+        raise ParameterError(
+            f'{path}: the column map has no {", ".join(missing)}: add {added}', key=added
+        )
     mapped = columns.columns
     table = source_of(path, columns.bus).table(
         [name for each in mapped.values() for name in each.names],

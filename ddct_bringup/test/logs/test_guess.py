@@ -80,3 +80,15 @@ def test_its_text_is_a_column_map_with_the_same_columns(tmp_path: Path) -> None:
     (tmp_path / 'map.yaml').write_text(guess.text('a.csv', tmp_path))
     assert load_columns(str(tmp_path / 'map.yaml')) == guess.columns
     assert 'guessed from the values, up to 900' in guess.text('a.csv', tmp_path)
+
+
+def test_what_is_needed_and_not_recognised_is_a_line_to_complete_with_the_columns_left(
+    tmp_path: Path,
+) -> None:
+    guess = guessed(tmp_path, {'t': 0.01, 'EngSpd_rpm': 900, 'x17_rpm': 800, 'torque b': 9})
+    text = guess.text('a.csv', tmp_path, ('engine_speed', 'shaft_speed', 'clutch_torque'))
+    assert '#  shaft_speed: {column: "?", unit: "rad/s"}' in text
+    assert '#  clutch_torque: {column: "?", unit: "N m"}' in text
+    assert '"x17_rpm", "torque b"' in text.splitlines()[-1]
+    (tmp_path / 'map.yaml').write_text(text)
+    assert load_columns(str(tmp_path / 'map.yaml')) == guess.columns

@@ -156,7 +156,7 @@ class Gearbox(OptionGroup, prefix='gearbox.'):
         It is this one with the measured ratio in the gear that is within 1 % of it; without such
         a gear it is a gearbox with that gear alone.
         """
-        number = min(range(1, self.gears + 1), key=lambda each: self._distance(each, gear))
+        number = self.nearest(gear)
         if self.gear(number) == gear:
             return self, number
         if self._distance(number, gear) > _SAME_GEAR:
@@ -165,6 +165,10 @@ class Gearbox(OptionGroup, prefix='gearbox.'):
         measured[number] = gear.total_ratio
         gears, ratios = tuple(measured), tuple(measured.values())
         return replace(self, measured_gears=gears, measured_ratios=ratios), number
+
+    def nearest(self, gear: EngagedGear) -> int:
+        """Return the number of the gear whose total ratio is nearest."""
+        return min(range(1, self.gears + 1), key=lambda each: self._distance(each, gear))
 
     def _distance(self, number: int, gear: EngagedGear) -> float:
         return abs(self.gear(number).total_ratio / gear.total_ratio - 1.0)

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddct_bringup.identification.from_log.stretches import KnownLoad
+from ddct_bringup.logs.columns import ColumnMap
 from ddct_bringup.logs.log import MeasuredLog
-from ddct_bringup.logs.wheel_radius import MeasuredRadius, measured_radius
+from ddct_bringup.logs.wheel_radius import WHEEL_SPEED, MeasuredRadius, measured_radius
 from ddct_plant.models.body import RADIUS
 from ddct_plant.models.gearbox import AGREE
 from ddct_plant.models.load import RoadLoad
@@ -19,8 +20,11 @@ from ddct_plant.scenario.content import flat
 from ddct_plant.scenario.overrides import parsed_override
 from ddct_plant.scenario.scenario import Scenario
 
-MEASURED, GIVEN, ASSUMED = 'measured', 'given', 'assumed'
-"""Origins of a wheel radius: the log, --set, or only the car that the fit starts from."""
+MEASURED, GIVEN, OF_MAP, ASSUMED = 'measured', 'given', 'of the column map', 'assumed'
+"""
+Origins of a wheel radius: the log, --set, `radius_m` of a wheel speed in km/h or m/s, or only the
+car that the fit starts from.
+"""
 
 
 @dataclass(frozen=True)
@@ -30,7 +34,7 @@ class WheelRadius:
     value_m: float
     """Radius r_w in m."""
     state: str
-    """Origin: MEASURED, GIVEN or ASSUMED."""
+    """Origin: MEASURED, GIVEN, OF_MAP or ASSUMED."""
     measured: MeasuredRadius | None
     """Radius of V_x over w_r; None where the log does not have both."""
 
@@ -43,11 +47,21 @@ class WheelRadius:
         return None if math.isclose(self.value_m, found.value_m, rel_tol=AGREE) else found
 
 
-def radius_of(base: Scenario, overrides: Sequence[str], log: MeasuredLog) -> WheelRadius:
-    """Return the wheel radius: that of --set, else that of V_x and w_r, else that of `base`."""
+def radius_of(
+    base: Scenario, overrides: Sequence[str], log: MeasuredLog, columns: ColumnMap
+) -> WheelRadius:
+    """
+    Return the wheel radius: that of --set, else that of V_x and w_r, else that of `base`.
+
+    A wheel speed in km/h or m/s is V_x over the `radius_m` of the map. So both measure nothing but
+    that radius again, which then is the origin.
+    """
     measured, of_base = measured_radius(log), base.vehicle.wheel_radius_m
+    of_map = columns.columns[WHEEL_SPEED].radius_m if WHEEL_SPEED in columns.columns else None
     if RADIUS in flat(dict(map(parsed_override, overrides))):
         return WheelRadius(of_base, GIVEN, measured)
+    if of_map:
+        return WheelRadius(measured.value_m if measured else of_map, OF_MAP, measured)
     if measured:
         return WheelRadius(measured.value_m, MEASURED, measured)
     return WheelRadius(of_base, ASSUMED, None)

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ddct_bringup.identification.from_log.car_of_log import car_of
+from ddct_bringup.identification.from_log.car_of_log import base_of_car, car_of
 from ddct_bringup.identification.from_log.drive_of_log import LogDrive
+from ddct_bringup.identification.from_log.origins import commented, origins
 from ddct_plant.base.errors import LONGEST_NAME, DdctError
 from ddct_plant.files.csv_table import csv_text
 from ddct_plant.files.output_file import require_new, write_text
@@ -63,11 +64,12 @@ class OutFolder:
 
 def write_car_and_drive(
     out: OutFolder, choice: Choice, overrides: Sequence[str], drive: LogDrive
-) -> None:
+) -> list[str]:
     """
     Write the car, the drive and its profiles; the fit started from `choice` and `overrides`.
 
-    Raise DdctError, before any file is written, for a C_load that no slope gives.
+    Return where the values of the car are from, as sentences, which its file has too. Raise
+    DdctError, before any file is written, for a C_load that no slope gives.
     """
     texts, content = {}, drive.content()
     for section, rows in drive.tables().items():
@@ -76,7 +78,10 @@ def write_car_and_drive(
         content[section] |= {'value': value, 'unit': unit}
         texts[section] = csv_text((_COLUMNS['time'], value), rows)
     texts[DRIVE] = dump_yaml(content)
-    texts[CAR] = dump_yaml(car_of(out.folder, choice, overrides, drive))
+    car = car_of(out.folder, choice, overrides, drive)
+    found = origins(car, base_of_car(choice), drive.fit)
+    texts[CAR] = commented(found) + dump_yaml(car)
     out.folder.mkdir(parents=True, exist_ok=True)
     for what, text in texts.items():
         write_text(str(out.files[what]), text)
+    return found

@@ -22,6 +22,7 @@ from ddct_bringup.identification.from_log.unknowns import PARAMETERS
 from ddct_bringup.identification.from_log.verdict import reasons_against
 from ddct_bringup.logs.columns import ColumnMap
 from ddct_bringup.logs.log import SPEEDS, MeasuredLog, read_log
+from ddct_plant.base.clutch_kinds import STICK_SLIP
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import options_of, require_known
 from ddct_plant.files.output_file import STDOUT, require_place
@@ -29,8 +30,9 @@ from ddct_plant.program.command_line import ProgramParser, show_and_write
 from ddct_plant.program.printed_table import print_note
 from ddct_plant.program.progress import Progress
 from ddct_plant.scenario.choices.command_line import add_scenario_options, choice_of
+from ddct_plant.scenario.choices.scenarios import DEFAULT_CAR
 from ddct_plant.scenario.chosen import scenario_of as base_scenario
-from ddct_plant.scenario.nouns.keys import NOUNS
+from ddct_plant.scenario.nouns.keys import CAR, NOUNS
 from ddct_plant.scenario.overrides import parsed_override
 
 NEEDED = (*SPEEDS, *TORQUES)
@@ -114,7 +116,7 @@ def identify_log(options: argparse.Namespace) -> int:
         return 0
     require_known(columns.run, options_of(MeasuredKeys), prefix='run.')
     fitted, held_out = _logs(options, columns)
-    radius = radius_of(start, options.overrides, fitted)
+    radius = radius_of(start, options.overrides, fitted, columns)
     base = with_radius(start, radius)
     drag = drag_of(base)
     # Before the fit, which takes long, because they raise the errors of the logs.
@@ -146,13 +148,30 @@ def identify_log(options: argparse.Namespace) -> int:
         set_times = dict(map(parsed_override, options.overrides))
         given = {key: set_times[key] for key in TIMES if key in set_times}
         drive = LogDrive(base, fit, whole, given or columns.run, stretches_of(whole, drag))
-        write_car_and_drive(out, choice_of(options), options.overrides, drive)
+        found = write_car_and_drive(out, choice_of(options), options.overrides, drive)
         if options.json != STDOUT:
-            for note in drive.notes:
-                print_note(f'Note: {note}.')
-            files = ' '.join(f'--{noun} {out.files[noun]}' for noun in NOUNS)
-            print_note(f'Run it: ddct bringup --controller pi --headless {files} --out runs/new')
+            _print_written(out, drive, found)
     return 0
+
+
+def _print_written(out: OutFolder, drive: LogDrive, origins: Sequence[str]) -> None:
+    """Print where the values of the new car are from, and what it can be used for."""
+    car, replay = (f'--{noun} {out.files[noun]}' for noun in NOUNS)
+    print(f'{out.files[CAR]}:')
+    for each in origins:
+        print_note(f'- {each}')
+    for note in drive.notes:
+        print_note(f'Note: {note}.')
+    compare = 'ddct compare --controllers pi,ls8 --headless'
+    print_note(f'Replay the log: {compare} {car} {replay} --out runs/replay')
+    if drive.base.clutch == STICK_SLIP:
+        print_note(f'Launch it: {compare} {car} --drive launch --out runs/launch')
+    else:
+        print_note(
+            f'Note: the clutch of the car is {drive.base.clutch}, which cannot lock. Launches, '
+            f'shifts and a benchmark need clutch: {STICK_SLIP}: give a car with it, such as '
+            f'--car {DEFAULT_CAR}, or a file with your gears and engine.'
+        )
 
 
 def _more(reasons: Sequence[str]) -> str:

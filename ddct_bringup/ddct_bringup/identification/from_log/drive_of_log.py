@@ -4,7 +4,7 @@
 
 import dataclasses
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -127,8 +127,8 @@ class LogDrive:
 
     @property
     def notes(self) -> list[str]:
-        """What the profiles do not have of the log, as sentences."""
-        found = []
+        """What car and drive do not have of the log, as sentences."""
+        found = [*self._lost_gears()]
         least = float(self._means('engine_torque', np.arange(self.steps)).min())
         if least < 0.0:
             found.append(
@@ -141,6 +141,20 @@ class LogDrive:
                 f'have at most {MOST_ROWS} points'
             )
         return found
+
+    def _lost_gears(self) -> Iterator[str]:
+        """Yield a note where the ratio of the log is that of no gear of the base."""
+        gearbox, gear = self.base.gearbox, self.fit.parameters.gear
+        if self.moved.gearbox.gears < gearbox.gears:
+            number = gearbox.nearest(gear)
+            nearest = gearbox.gear(number)
+            radius = self.base.vehicle.wheel_radius_m * nearest.shaft_ratio(gear)
+            yield (
+                f'the total ratio of {gear.total_ratio:.4g} is that of no gear (gear {number} has '
+                f'{nearest.total_ratio:.4g}), so the new car has this gear alone and cannot '
+                'shift: give a car with its gears by --car, or, if the wheel speed is in km/h and '
+                f'this is gear {number}, radius_m: {radius:.4g} in the column map'
+            )
 
     @property
     def _every(self) -> int:

@@ -41,7 +41,7 @@ def columns_of(options: argparse.Namespace, car: Scenario, needed: Sequence[str]
     full = limits.most_torque if limits else _FULL_N_M
     guess = guessed_columns(source, car.vehicle.wheel_radius_m, full, options.dbc)
     folder = Path() if options.guess in (None, STDOUT) else Path(options.guess).parent
-    text = guess.text(options.log.name, folder)
+    text = guess.text(options.log.name, folder, (TIME, *needed))
     if options.guess:
         require_new('--guess', options.guess, overwrite=options.overwrite)
         write_text(options.guess, f'{text}\n')
@@ -52,8 +52,8 @@ def columns_of(options: argparse.Namespace, car: Scenario, needed: Sequence[str]
     of_bus = '; frames of a bus need --dbc' if is_mdf and not options.dbc else ''
     if missing and not options.guess:
         raise DdctError(
-            f'no column is taken for {", ".join(missing)}: write the map that is printed above '
-            f'into a file by --guess FILE, complete it, and give it as --columns{of_bus}',
+            f'no column is taken for {", ".join(missing)}: write the map above into a file by '
+            f'--guess FILE, complete it, and give it as --columns{of_bus}',
             place=options.log,
         )
     return guess.columns

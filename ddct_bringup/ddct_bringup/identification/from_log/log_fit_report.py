@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from ddct_bringup.identification.from_log.base_car import ASSUMED, GIVEN, WheelRadius
+from ddct_bringup.identification.from_log.base_car import ASSUMED, GIVEN, OF_MAP, WheelRadius
 from ddct_bringup.identification.from_log.prediction import SpeedPrediction
 from ddct_bringup.identification.from_log.result import LogFit
 from ddct_bringup.identification.from_log.stretches import LOAD
@@ -269,6 +269,8 @@ def _radius_text(report: LogFitReport) -> str:
     value, found = f'{radius.value_m:.5g} m', radius.measured
     if radius.state == ASSUMED:
         return f'{value}, assumed: that of {report.base}'
+    if radius.state == OF_MAP:
+        return f'{value}, by radius_m of the column map: a wheel speed in km/h or m/s has no other'
     if radius.state == GIVEN or not found:
         return f'{value}, given by --set'
     return f'{value} ({_interval(found)}), measured: vehicle_speed over wheel_speed'
