@@ -2,8 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -e -o pipefail -c
 .DELETE_ON_ERROR:
-.PHONY: help setup demo docs fmu gym-extra tune-extra sbom test test-fast test-nightly lint fuzz faults bench soak loaded-runs benchmark-rows release \
-    lock clean
+.PHONY: setup demo test test-fast test-nightly lint docs lock clean help
 
 ifneq ($(words $(CURDIR)),1)
 $(error colcon fails in a folder with a space in its path, move the repository: $(CURDIR))
@@ -18,13 +17,19 @@ unexport $(filter AMENT_% COLCON_% RMW_% ROS_% _ROS_% CMAKE_PREFIX_PATH LD_LIBRA
 export OPENBLAS_NUM_THREADS := 1
 
 BIN := .venv/bin
-# Runs an instrument of tools/; some need helpers of tests/support.
-TOOL = PYTHONPATH="$(CURDIR)/tools:$(CURDIR)/tests:$(CURDIR)/ddct_plant/test/helpers$${PYTHONPATH:+:$$PYTHONPATH}" $(BIN)/python -P -m
 SOURCED := . install/setup.bash;
 VENV_MADE := .venv/.made
 WORKSPACE_BUILT := install/.built
-EXTRAS_INSTALLED := .venv/.bench .venv/.fmu .venv/.fuzz .venv/.gym .venv/.site .venv/.test .venv/.tune
 BUILD_INPUTS := $(wildcard ddct_*/package.xml ddct_*/setup.* ddct_*/bin ddct_*/config ddct_*/foxglove)
+
+# Groups of pyproject.toml that are installed on request, each from its lock.
+EXTRA_GROUPS := bench fmu fuzz gym site test tune
+COMMA := ,
+WANTED := $(subst $(COMMA), ,$(EXTRAS))
+ifneq ($(filter-out $(EXTRA_GROUPS),$(WANTED)),)
+$(error no extra $(filter-out $(EXTRA_GROUPS),$(WANTED)): EXTRAS takes some of $(EXTRA_GROUPS), with commas between them)
+endif
+FOR_TESTS := $(addprefix .venv/.,fmu gym site test tune)
 
 PYTHONS := $(or $(PYTHON),python3.13 python3.12 python3.11 python3)
 SUITABLE := import ensurepip, sys, venv; sys.exit(not (3, 11) <= sys.version_info < (3, 14))
@@ -32,15 +37,14 @@ NEEDED_AT_RUN := bokeh, control, daqp, jinja2, matplotlib, osqp, scipy.signal, t
     diagnostic_msgs.msg, geometry_msgs.msg, rosgraph_msgs.msg, sensor_msgs.msg, trajectory_msgs.msg
 
 help:
-	@echo 'make setup | fmu | gym-extra | tune-extra | demo | test | test-fast | test-nightly | fuzz | faults | lint | docs | bench | soak | loaded-runs |' \
-	    'benchmark-rows | sbom | release | lock | clean (see docs/use/setup.md)'
+	@echo 'make setup | demo | test | test-fast | test-nightly | lint | docs | lock | clean (see docs/use/setup.md)'
 
-setup: $(WORKSPACE_BUILT)
+setup: $(WORKSPACE_BUILT) $(addprefix .venv/.,$(WANTED))
 
 # Always a new environment: each ROS wheel holds a second package record (rclpy in ros-rclpy), and
 # a second sync would take those for strangers and remove their modules.
 # colcon's install/setup.* chain to local_setup.*, so that the ament index has the message packages.
-$(VENV_MADE): requirements.txt requirements-uv.txt
+$(VENV_MADE): locks/workspace.txt locks/uv.txt
 	@if [ "$$(uname -sm)" != 'Linux x86_64' ]; then \
 	    echo "make: the ROS 2 wheels are for x86-64 Linux, this is $$(uname -sm)" >&2; exit 1; fi; \
 	for python in $(PYTHONS); do \
@@ -52,10 +56,10 @@ $(VENV_MADE): requirements.txt requirements-uv.txt
 	echo "Making .venv with $$("$$python" --version) ($$python)"; \
 	"$$python" -m venv --clear .venv
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check --require-hashes \
-	    --only-binary :all: -r requirements-uv.txt
-	@echo 'Installing requirements.txt'
+	    --only-binary :all: -r locks/uv.txt
+	@echo 'Installing locks/workspace.txt'
 	@$(BIN)/uv pip sync --quiet --python $(BIN)/python --require-hashes \
-	    --build-constraints requirements.txt requirements.txt requirements-uv.txt
+	    --build-constraints locks/workspace.txt locks/workspace.txt locks/uv.txt
 	@$(BIN)/python -c 'import $(NEEDED_AT_RUN)'
 	@for shell in sh bash zsh; do \
 	    echo 'export AMENT_PREFIX_PATH="$(CURDIR)/.venv$${AMENT_PREFIX_PATH:+:$$AMENT_PREFIX_PATH}"' \
@@ -69,18 +73,14 @@ $(WORKSPACE_BUILT): $(VENV_MADE) $(BUILD_INPUTS)
 	@AMENT_PREFIX_PATH="$(CURDIR)/.venv" $(BIN)/colcon build --symlink-install
 	@touch $@
 
+# Added to the environment that is there; a second sync would break it.
+$(addprefix .venv/.,$(EXTRA_GROUPS)): .venv/.%: locks/%.txt $(VENV_MADE)
+	@$(BIN)/uv pip install --quiet --python $(BIN)/python --require-hashes -r $<
+	@touch $@
+
 demo: setup
 	@$(SOURCED) ddct compare \
 	    --controllers pi,ls8,hinf1,mpc3,mpc4 --out runs/demo --overwrite
-
-# What runs a controller that is an FMU.
-fmu: setup .venv/.fmu
-
-# What makes the closed loop an environment for learners.
-gym-extra: setup .venv/.gym
-
-# What `ddct tune` searches with.
-tune-extra: setup .venv/.tune
 
 # One session of pytest: one for each package would import and collect everything again, on an idle core at its end.
 # That colcon finds the tests of each package is a test of its own.
@@ -88,76 +88,30 @@ TEST_FOLDERS := $(wildcard tests ddct_*/test)
 NIGHTLY := tests/nightly
 # A process that a hanging test has ended is not replaced: its successor would run that test again.
 WORKERS := --dist loadfile --max-worker-restart 0
-test: fmu gym-extra tune-extra .venv/.site .venv/.test
+test: setup $(FOR_TESTS)
 	@$(SOURCED) $(BIN)/python -m pytest $(WORKERS) -n 3 --no-loadscope-reorder \
 	    -m 'not nightly' --ignore=$(NIGHTLY) $(TEST_FOLDERS)
 
 # What depends on the wall clock, whole gates and products of lists: before a release.
 LONG := -o faulthandler_timeout=3600
-test-nightly: fmu gym-extra tune-extra .venv/.site .venv/.test
+test-nightly: setup $(FOR_TESTS)
 	@$(SOURCED) $(BIN)/python -m pytest $(LONG) $(WORKERS) -n 2 $(NIGHTLY)
 	@$(SOURCED) $(BIN)/python -m pytest $(LONG) $(WORKERS) -n 2 -m nightly --ignore=$(NIGHTLY) $(TEST_FOLDERS)
 	@$(SOURCED) DDCT_SCHEDULES=1000 $(BIN)/python -m pytest $(LONG) $(WORKERS) -n 2 --dist load \
 	    ddct_plant/test/ticks ddct_plant/test/fail_safe
-
-# Rows of all packaged controllers on the benchmark's development cases, kept with a release: a minute or two.
-# It goes on with what is in runs/benchmark_rows, unless the sources have changed since: then remove that first.
-benchmark-rows: setup
-	@$(SOURCED) $(BIN)/python -m ddct_bringup.benchmark.release
 
 # Tests without a marker; tests/plugins/tiers.py selects and checks them.
 test-fast: setup .venv/.gym .venv/.tune
 	@$(SOURCED) $(BIN)/python -m pytest $(WORKERS) -q -n 2 \
 	    --fast-tier --ignore=$(NIGHTLY) $(TEST_FOLDERS)
 
-# Damaged inputs for every reader, minutes: SECONDS for each, at random and guided; READERS='bag log' tries only those.
-SECONDS := 20
-fuzz: fmu .venv/.fuzz
-	@$(SOURCED) $(TOOL) fuzz --seconds $(SECONDS) $(READERS)
-
-# The hundred faults that differ in cause on the real graph, ten minutes: CASES='killed lockstep' tries only those with these words.
-faults: setup
-	@$(SOURCED) $(TOOL) faults $(if $(JSON),--json '$(JSON)') $(CASES)
-
 # With everything that the tests install: mypy judges otherwise without a package's types than with them.
-lint: fmu gym-extra tune-extra .venv/.site .venv/.test
+lint: setup $(FOR_TESTS)
 	@status=0; \
 	$(BIN)/ruff check || status=1; \
 	$(BIN)/ruff format --check || status=1; \
 	$(BIN)/mypy || status=1; \
 	exit $$status
-
-# What is installed, and what the wheels bundle, as CycloneDX JSON; needs no network.
-sbom: setup
-	@$(SOURCED) $(TOOL) sbom build/sbom.cdx.json
-
-# Added to the environment that is there; a second sync would break it.
-$(EXTRAS_INSTALLED): .venv/.%: requirements-%.txt $(VENV_MADE)
-	@$(BIN)/uv pip install --quiet --python $(BIN)/python --require-hashes -r $<
-	@touch $@
-
-# Ratios to peers measured in turn: BASE=REV adds commands of that commit, WHAT='graph headless' chooses by name.
-# A peer that cannot be installed is not measured.
-bench: setup
-	@$(MAKE) --no-print-directory --silent .venv/.bench \
-	    || echo 'make: without requirements-bench.txt its peer is not measured' >&2
-	@$(SOURCED) $(TOOL) bench $(WHAT) $(if $(BASE),--base '$(BASE)') $(if $(ROUNDS),--rounds '$(ROUNDS)') \
-	    $(if $(JSON),--json '$(JSON)')
-
-# The graph in real time beside a bare chain, MINUTES for each of CONDITIONS (idle, busy, preferred).
-MINUTES := 10
-soak: setup
-	@$(SOURCED) $(TOOL) soak --minutes $(MINUTES) $(if $(JSON),--json '$(JSON)') $(CONDITIONS)
-
-# Lock-step runs of the graph on busy cores, RUNS of them: each must have the hash of the headless loop.
-RUNS := 1000
-loaded-runs: setup
-	@$(SOURCED) $(TOOL) soak.loaded_runs --runs $(RUNS)
-
-# sdists and wheels in dist/, once they have passed a trial in an empty environment without ROS.
-# MAINTAINER=name@domain is the address in their package.xml.
-release: setup
-	@$(TOOL) release --out dist $(if $(MAINTAINER),--maintainer '$(MAINTAINER)')
 
 # The documentation as one folder that opens from disk, with search and a reference: site/index.html.
 # What it shows of results, programs compute first: some minutes, and again only once the sources have changed.
@@ -174,18 +128,13 @@ $(RESULTS)/%.json: $(WORKSPACE_BUILT) $(SOURCES)
 	@$(SOURCED) ddct $(COMMAND) > $@
 
 # One numpy and one scipy for all three Pythons, so that figures do not depend on the Python.
+# The versions of the locks that are there stay where they can.
 COMPILE := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
     --no-header --fork-strategy fewest
 lock: $(VENV_MADE)
-	@$(COMPILE) requirements.in -o requirements.txt
-	@$(COMPILE) requirements-bench.in -c requirements.txt -o requirements-bench.txt
-	@$(COMPILE) requirements-fmu.in -c requirements.txt -o requirements-fmu.txt
-	@$(COMPILE) requirements-gym.in -c requirements.txt -o requirements-gym.txt
-	@$(COMPILE) requirements-test.in -c requirements.txt -o requirements-test.txt
-	@$(COMPILE) requirements-tune.in -c requirements.txt -o requirements-tune.txt
-	@$(COMPILE) requirements-site.in -c requirements.txt -o requirements-site.txt
-	@$(COMPILE) requirements-fuzz.in -c requirements.txt -o requirements-fuzz.txt
-	@echo uv | $(COMPILE) - -o requirements-uv.txt
+	@$(COMPILE) --group workspace -o locks/workspace.txt
+	@for group in uv $(EXTRA_GROUPS); do \
+	    $(COMPILE) --group $$group -c locks/workspace.txt -o locks/$$group.txt; done
 
 clean:
 	rm -rf .venv build install log .fuzz_cache .mypy_cache .pytest_cache .ruff_cache

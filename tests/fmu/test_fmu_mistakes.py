@@ -162,4 +162,4 @@ def test_the_error_without_fmpy_names_the_command_that_installs_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setitem(sys.modules, 'fmpy', None)
-    assert 'FMPy is not installed: `make fmu`' in complaint(controller_file(2))
+    assert 'FMPy is not installed: `make setup EXTRAS=fmu`' in complaint(controller_file(2))

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Readers refuse damaged inputs in one line: found ones, and a few new; `make fuzz` has more."""
+"""Readers refuse damaged inputs in a line: found ones, a few new; `tools/run fuzz` has more."""
 
 from pathlib import Path
 

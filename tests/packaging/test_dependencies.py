@@ -5,6 +5,7 @@
 import ast
 import re
 import sys
+import tomllib
 import xml.etree.ElementTree as ElementTree
 from functools import cache
 
@@ -126,10 +127,27 @@ def without_key(module: str) -> set[str]:
     return set() if key else {name}
 
 
-def test_the_requirements_of_the_wheel_path_name_all_of_it() -> None:
-    extras = ('fmu', 'gym', 'tune')
-    files = [ROOT / f'requirements{end}.in' for end in ('', *(f'-{each}' for each in extras))]
-    lines = [line for file in files for line in file.read_text(encoding='utf-8').splitlines()]
-    names = {re.split(r'[\[<=\s#]', line, maxsplit=1)[0] for line in lines}
+def test_the_groups_of_the_wheel_path_name_all_of_it() -> None:
+    names = {name for group in ('workspace', 'fmu', 'gym', 'tune') for name in in_group(group)}
     assert {name for name, _ in FROM_PYPI.values()} - BY_USERS <= names
     assert not names & BY_USERS
+
+
+def test_each_group_has_a_lock_that_holds_all_of_it() -> None:
+    locks = {file.stem: file.read_text(encoding='utf-8') for file in (ROOT / 'locks').iterdir()}
+    assert set(locks) == set(groups())
+    for group, text in locks.items():
+        assert in_group(group) <= set(re.findall(r'^([\w.-]+)==', text, re.MULTILINE)), group
+
+
+@cache
+def groups() -> dict[str, list[str]]:
+    """Return the requirements of each group of pyproject.toml."""
+    text = (ROOT / 'pyproject.toml').read_text(encoding='utf-8')
+    found: dict[str, list[str]] = tomllib.loads(text)['dependency-groups']
+    return found
+
+
+def in_group(group: str) -> set[str]:
+    """Return the names of the packages that a group requires."""
+    return {re.split(r'[\[<=]', each, maxsplit=1)[0] for each in groups()[group]}

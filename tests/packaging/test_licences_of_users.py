@@ -13,9 +13,9 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-USERS = tuple(f'requirements{end}.txt' for end in ('', '-fmu', '-gym', '-tune', '-uv'))
-"""Locks that `make setup` and the targets of the optional extras install."""
-TESTS = 'requirements-test.txt'
+USERS = ('workspace', 'uv', 'fmu', 'gym', 'tune')
+"""Locks that `make setup` installs, the last three on request."""
+TESTS = 'test'
 NOT_IN_THE_WHEEL = {'docutils': 'rst.el'}
 """By package under another licence the one file of it under the GPL, which its wheel lacks."""
 _GPL = re.compile(r'(?<!L)(?<!Lesser )(?<!Library or Lesser )(GPL|General Public Licen[sc]e)')
@@ -23,7 +23,8 @@ _GPL = re.compile(r'(?<!L)(?<!Lesser )(?<!Library or Lesser )(GPL|General Public
 
 def locked(name: str) -> list[str]:
     """Return the names of the packages in a lock."""
-    return re.findall(r'^([\w.-]+)==', (ROOT / name).read_text(encoding='utf-8'), re.MULTILINE)
+    text = (ROOT / 'locks' / f'{name}.txt').read_text(encoding='utf-8')
+    return re.findall(r'^([\w.-]+)==', text, re.MULTILINE)
 
 
 def is_gpl(about: PackageMetadata) -> bool:

@@ -17,7 +17,7 @@ _FENCE = re.compile(r'^(```+)(\S*).*?\n(.*?)^\1$', re.DOTALL | re.MULTILINE)
 _INDENTED = re.compile(r'(?:^    .*\n)+', re.MULTILINE)
 _LINK = re.compile(r'\[[^\]]*\]\(([^)#\s]+)[^)]*\)')
 _COMMAND = re.compile(
-    r'^(ddct |ros2|make|\.|colcon|sudo|rosdep|python3?|cc|cp|git|pip|jupyter) ?\S'
+    r'^(ddct |ros2|make|\.|colcon|sudo|rosdep|python3?|cc|cp|git|pip|jupyter|tools/run) ?\S'
 )
 
 

@@ -14,6 +14,7 @@ from support.documented import Block, blocks
 
 NOT_RUN_HERE = {
     'make': 'would run this very test, or take its environment away; .ci/run and users run them',
+    'tools/run': 'takes minutes, or a file of the past; an instrument is no part of the suite',
     'sudo': "needs Ubuntu with apt's ROS 2",
     'rosdep': "needs apt's ROS 2",
     'colcon': 'make setup has run it',

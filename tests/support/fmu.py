@@ -40,7 +40,7 @@ GAINS = 'controllers.pi={proportional_gain: 0.2, integral_gain: 0.3}'
 
 def skip_without_fmus() -> None:
     """Skip a test on a machine that cannot build FMUs or run them."""
-    pytest.importorskip('fmpy', reason='FMPy, an optional extra, is absent: make fmu')
+    pytest.importorskip('fmpy', reason='FMPy, an optional extra, is absent: EXTRAS=fmu')
     if shutil.which('cc') is None:
         pytest.skip('there is no C compiler cc')
 

@@ -1,11 +1,11 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-`make bench`: our cost over that of a reference, measured in turn; less is better.
+Our cost over that of a reference, measured in turn; less is better.
 
-    make bench                              beside peers
-    make bench BASE=HEAD~5                  beside peers, and commands beside those of a commit
-    make bench WHAT='graph headless' ROUNDS=3   only names with one of these words
+    tools/run bench                             beside peers
+    tools/run bench --base HEAD~5               beside peers, and commands beside those of a commit
+    tools/run bench graph headless --rounds 3   only names with one of these words
 """
 
 import argparse
@@ -28,7 +28,7 @@ from bench.workspaces import ProgramError, base_workspace
 def main() -> None:
     """Measure, print each line when it is there, and write the JSON."""
     parser = argparse.ArgumentParser(
-        prog='make bench',
+        prog='tools/run bench',
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -68,6 +68,6 @@ if __name__ == '__main__':
     try:
         main()
     except ProgramError as error:
-        sys.exit(f'make bench: {error}')
+        sys.exit(f'tools/run bench: {error}')
     except KeyboardInterrupt:
         sys.exit(128 + signal.SIGINT)

@@ -131,7 +131,7 @@ def _beside_do_mpc() -> tuple[Cost, Cost]:
     try:
         from bench.do_mpc_step import DoMpcController
     except ImportError as error:
-        raise NotMeasured(f'{error}: make .venv/.bench') from error
+        raise NotMeasured(f'{error}: make setup EXTRAS=bench') from error
     run = _recorded()
     peer = DoMpcController(MODEL, make_observer(RUN.known, MODEL), PREVIEW.settings())
     return partial(_update_s, _preview(), run), partial(_update_s, peer, run)

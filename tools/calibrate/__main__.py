@@ -3,9 +3,9 @@
 r"""
 Fit the scenario `thesis` again to the LS8, Hinf1 and PI rows of Table 5.1.
 
-    python -P -m calibrate            search every end of the score window, minutes
-    python -P -m calibrate --quick    only the fit from the packaged values, seconds
-    python -P -m calibrate --quick --set initial.shaft_speed_rad_s=120 \
+    tools/run calibrate            search every end of the score window, minutes
+    tools/run calibrate --quick    only the fit from the packaged values, seconds
+    tools/run calibrate --quick --set initial.shaft_speed_rad_s=120 \
         --set initial.engine_speed_rad_s=120
 
 The exit code is 1 when the fit ends elsewhere than the packaged scenario is: at another end of the
@@ -39,7 +39,9 @@ _DECIMALS = (1, 1, 4, 2, 4, 5)
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the program and return its exit code."""
     parser = argparse.ArgumentParser(
-        prog='calibrate', description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        prog='tools/run calibrate',
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument('--quick', action='store_true', help='only fit from the packaged values')
     parser.add_argument(

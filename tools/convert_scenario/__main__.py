@@ -3,7 +3,7 @@
 """
 Convert a scenario file of before into a car, a drive and a scenario with the same numbers.
 
-    PYTHONPATH=tools:$PYTHONPATH python -P -m convert_scenario old.yaml --out new.yaml
+    tools/run convert_scenario old.yaml --out new.yaml
 
 The car stands in new_car.yaml with what differs from the packaged C635, the drive in
 new_drive.yaml. A file of before says nothing about its clutch: give the model that its runs had.
@@ -23,7 +23,7 @@ from ddct_plant.scenario.file import load_scenario
 def main(arguments: list[str] | None = None) -> int:
     """Run the program and return its exit code."""
     parser = argparse.ArgumentParser(
-        prog='convert_scenario',
+        prog='tools/run convert_scenario',
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )

@@ -3,7 +3,7 @@
 """
 Draw the diagrams of the pages into docs/images, a second.
 
-    python -P -m diagrams
+    tools/run diagrams
 """
 
 from pathlib import Path

@@ -3,8 +3,8 @@
 """
 Count the classes and functions that a headless run enters, in memory and with its bag.
 
-    python -P -m entered                              a launch and a gear shift
-    python -P -m entered --scenario launch --names    one of them, with the names
+    tools/run entered                              a launch and a gear shift
+    tools/run entered --scenario launch --names    one of them, with the names
 
 The way is what is on the stack when the equations of the plant are entered in the periods of the
 run, from `compare` to these equations. A method counts as its class.
@@ -28,7 +28,9 @@ from entered.counter import Entered, Noun
 def main() -> int:
     """Run the program and return its exit code."""
     parser = argparse.ArgumentParser(
-        prog='entered', description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        prog='tools/run entered',
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(
         '--scenario', action='append', metavar='NAME', help='default: launch and upshift'

@@ -1,10 +1,10 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-`make faults`: every fault of the campaign on the real graph, beside its stated outcome.
+Every fault of the campaign on the real graph, beside its stated outcome.
 
-    make faults                              all cases, ten minutes on an idle machine
-    make faults CASES='killed lockstep'      those with all of these words in their names
+    tools/run faults                      all cases, ten minutes on an idle machine
+    tools/run faults killed lockstep      those with all of these words in their names
 
 The exit code is 1 if a case does not end as stated.
 """
@@ -47,7 +47,7 @@ def attempt_in_time(case: Case) -> tuple[bool, Observed, int]:
 def main() -> int:
     """Run the program; the exit code is 1 when a case did not end as stated."""
     parser = argparse.ArgumentParser(
-        prog='make faults',
+        prog='tools/run faults',
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )

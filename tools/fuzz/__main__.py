@@ -1,7 +1,7 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-`make fuzz`: every reader gets damaged inputs, first at random, then guided by the code reached.
+Every reader gets damaged inputs, first at random, then guided by the code reached.
 
 What a reader fails on is kept in tests/formats/found_inputs, where the suite tries it. Guided runs
 begin with the inputs by which earlier ones have reached new code, in .fuzz_cache.
@@ -20,14 +20,14 @@ from fuzz.readers import readers
 
 def main() -> int:
     """Run the program; the exit code is 1 after a finding."""
-    parser = argparse.ArgumentParser(prog='make fuzz', description=__doc__)
+    parser = argparse.ArgumentParser(prog='tools/run fuzz', description=__doc__)
     parser.add_argument('readers', nargs='*', help='names of readers; all if none is given')
     parser.add_argument('--seconds', type=float, default=20.0, help='for each reader and way')
     parser.add_argument('--seed', type=int, default=0)
     options = parser.parse_args()
     guide = find_spec('atheris') is not None
     if not guide:
-        print('make fuzz: atheris is not installed: inputs are random alone', file=sys.stderr)
+        print('tools/run fuzz: atheris is not installed: inputs are random alone', file=sys.stderr)
     findings = 0
     with tempfile.TemporaryDirectory(prefix='fuzz-') as name:
         known = readers(Path(name))

@@ -3,7 +3,7 @@
 """
 Why `launch_hill` has no floor: the brake as a variable, and the breakaway at a given period.
 
-    python -P -m hill --lock-times 0.8,1.0
+    tools/run hill --lock-times 0.8,1.0
 
 A wheel at rest has any friction up to that of brake and rolling resistance, and a wheel that turns
 has all of it. For each lock time this prints the least peak jerk of two larger sets, in which the
@@ -107,7 +107,7 @@ def least_peak(case: Case, breakaway: int | None, *, within: bool = False) -> fl
 
 def main() -> int:
     """Print the values for each lock time."""
-    parser = argparse.ArgumentParser(prog='hill', description=__doc__.splitlines()[1])
+    parser = argparse.ArgumentParser(prog='tools/run hill', description=__doc__.splitlines()[1])
     parser.add_argument('--lock-times', default='1.0')
     parser.add_argument('--controllers', default='pi,ls8,hinf_sampled')
     options = parser.parse_args()

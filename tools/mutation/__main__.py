@@ -3,7 +3,7 @@
 """
 Try random mutations of the product against the suite.
 
-`PYTHONPATH=tools .venv/bin/python -P -m mutation --help` has the options of the steps:
+`tools/run mutation --help` has the options of the steps:
 
     copy    make a scratch copy of a commit, with an environment of its own
     cover   run the suite in a copy and record which tests run which lines
@@ -37,7 +37,8 @@ GONE = 'gone'
 def main(arguments: Sequence[str] | None = None) -> int:
     """Do one of the steps and return the exit code."""
     parser = argparse.ArgumentParser(
-        prog='mutation', description='Try random mutations of the product against the suite.'
+        prog='tools/run mutation',
+        description='Try random mutations of the product against the suite.',
     )
     steps = parser.add_subparsers(required=True)
     step = steps.add_parser('copy', help='make a scratch copy of a commit')

@@ -3,7 +3,7 @@
 """
 Execute the notebooks and write them with their outputs, minutes.
 
-    python -P -m notebook_outputs
+    tools/run notebook_outputs
 """
 
 import sys

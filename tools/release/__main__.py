@@ -14,7 +14,7 @@ from release.trial import try_wheels
 
 def main() -> int:
     """Leave the files in the folder once the trial has passed; return the exit code."""
-    parser = argparse.ArgumentParser(prog='make release', description=__doc__)
+    parser = argparse.ArgumentParser(prog='tools/run release', description=__doc__)
     parser.add_argument('--out', type=Path, default=Path('dist'), help='folder of the files')
     parser.add_argument('--maintainer', default='', help='address for package.xml')
     options = parser.parse_args()
@@ -32,7 +32,7 @@ def main() -> int:
     if not options.maintainer and PLACEHOLDER in (ROOT / 'ddct_plant' / 'package.xml').read_text():
         print(
             f'package.xml names {PLACEHOLDER}, which reaches nobody: before you publish these '
-            'files, build them with make release MAINTAINER=name@domain'
+            'files, build them with tools/run release --maintainer name@domain'
         )
     return 0
 
@@ -41,4 +41,4 @@ if __name__ == '__main__':
     try:
         sys.exit(main())
     except ReleaseError as error:
-        sys.exit(f'make release: {error}')
+        sys.exit(f'tools/run release: {error}')

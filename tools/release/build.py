@@ -47,7 +47,7 @@ def run(*command: str | Path, cwd: Path | None = None) -> str:
 def require_address(address: str) -> None:
     """Raise ReleaseError for what is no address, or one of those that reach nobody."""
     if not _ADDRESS.fullmatch(address) or _RESERVED.search(address):
-        raise ReleaseError(f'MAINTAINER={address} reaches nobody: give name@domain')
+        raise ReleaseError(f'--maintainer {address} reaches nobody: give name@domain')
 
 
 def built(folder: Path, maintainer: str = '') -> list[Path]:
@@ -83,10 +83,10 @@ def name_maintainer(file: Path, address: str) -> None:
     """Write an address into a package.xml; raise ReleaseError where the placeholder is not."""
     text = file.read_text(encoding='utf-8')
     if PLACEHOLDER not in text:
-        raise ReleaseError(f'{file.parent.name}/package.xml has an address: leave MAINTAINER out')
-    lines = [
-        line for line in text.splitlines(keepends=True) if 'make release MAINTAINER' not in line
-    ]
+        raise ReleaseError(
+            f'{file.parent.name}/package.xml has an address: leave --maintainer out'
+        )
+    lines = [line for line in text.splitlines(keepends=True) if 'REP 149 asks' not in line]
     file.write_text(''.join(lines).replace(PLACEHOLDER, address), encoding='utf-8')
 
 

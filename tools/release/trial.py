@@ -47,7 +47,7 @@ def try_wheels(wheels: Sequence[Path], folder: Path) -> Iterator[str]:
     """
     Install wheels into a new environment in a folder, and use them; yield a line for each use.
 
-    The versions of what they need are those of requirements.txt. Raise ReleaseError with the
+    The versions of what they need are those of locks/workspace.txt. Raise ReleaseError with the
     output of the first use that fails.
     """
     folder.mkdir(parents=True)
@@ -84,8 +84,8 @@ def example_of_readme() -> str:
 
 
 def _versions(file: Path) -> Path:
-    """Write the versions of requirements.txt, without hashes, and return the file."""
-    lines = (ROOT / 'requirements.txt').read_text(encoding='utf-8').splitlines()
+    """Write the versions of locks/workspace.txt, without hashes, and return the file."""
+    lines = (ROOT / 'locks' / 'workspace.txt').read_text(encoding='utf-8').splitlines()
     pinned = [line.rstrip(' \\') for line in lines if re.match(r'[a-z0-9]', line)]
     file.write_text('\n'.join(pinned) + '\n', encoding='utf-8')
     return file

@@ -3,9 +3,9 @@
 """
 Bill of materials: what is installed, and what the wheels bundle, as CycloneDX JSON.
 
-`make sbom` runs it with the Python of `.venv`, without a network. Packages and versions come from
-the locks. What the wheels bundle comes from the files that they have installed: shared libraries,
-with the version in the name of the file, and OpenSSL, by the version that stands in each of them.
+It needs no network. Packages and versions come from the locks. What the wheels bundle comes from
+the files that they have installed: shared libraries, with the version in the name of the file, and
+OpenSSL, by the version that stands in each of them.
 """
 
 import argparse
@@ -21,15 +21,15 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
 LOCKS = {
-    'requirements.txt': 'required',
-    'requirements-uv.txt': 'required',
-    'requirements-fmu.txt': 'optional',
-    'requirements-gym.txt': 'optional',
-    'requirements-tune.txt': 'optional',
-    'requirements-bench.txt': 'excluded',
-    'requirements-fuzz.txt': 'excluded',
-    'requirements-site.txt': 'excluded',
-    'requirements-test.txt': 'excluded',
+    'workspace': 'required',
+    'uv': 'required',
+    'fmu': 'optional',
+    'gym': 'optional',
+    'tune': 'optional',
+    'bench': 'excluded',
+    'fuzz': 'excluded',
+    'site': 'excluded',
+    'test': 'excluded',
 }
 """Scope of CycloneDX by lock, the widest first: a package in two of them has the first."""
 _PIN = re.compile(r'^([\w.-]+)==(\S+)', re.MULTILINE)
@@ -74,11 +74,12 @@ def document() -> dict[str, Any]:
 
 def _packages() -> Iterator[tuple[str, str, str]]:
     """Yield name, version and scope of every package in the locks, sorted, each once."""
-    if unknown := {file.name for file in ROOT.glob('requirements*.txt')} - set(LOCKS):
-        raise SystemExit(f'make sbom: no scope is given for {", ".join(sorted(unknown))}')
+    if unknown := {file.stem for file in (ROOT / 'locks').glob('*.txt')} - set(LOCKS):
+        raise SystemExit(f'tools/run sbom: no scope is given for {", ".join(sorted(unknown))}')
     found: dict[tuple[str, str], str] = {}
     for lock, scope in LOCKS.items():
-        for name, version in _PIN.findall((ROOT / lock).read_text(encoding='utf-8')):
+        text = (ROOT / 'locks' / f'{lock}.txt').read_text(encoding='utf-8')
+        for name, version in _PIN.findall(text):
             found.setdefault((name, version), scope)
     for (name, version), scope in sorted(found.items()):
         yield name, version, scope

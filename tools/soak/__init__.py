@@ -1,3 +1,3 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The graph for minutes: in real time beside a bare chain, and in lock-step on busy cores."""
+"""The graph for minutes in real time, beside a bare chain."""

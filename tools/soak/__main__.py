@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""`make soak`: the graph in real time for minutes, beside a bare chain in the same minutes."""
+"""The graph in real time for minutes, beside a bare chain in the same minutes."""
 
 import argparse
 import json
@@ -21,7 +21,7 @@ PERCENTS = (50.0, 99.0, 99.9, 100.0)
 
 def main() -> int:
     """Run the program and return its exit code."""
-    parser = argparse.ArgumentParser(prog='make soak', description=__doc__)
+    parser = argparse.ArgumentParser(prog='tools/run soak', description=__doc__)
     parser.add_argument(
         'conditions', nargs='*', metavar='CONDITION', help=f'some of {", ".join(CONDITIONS)}'
     )
@@ -70,6 +70,6 @@ if __name__ == '__main__':
     try:
         sys.exit(main())
     except SoakError as error:
-        sys.exit(f'make soak: {error}')
+        sys.exit(f'tools/run soak: {error}')
     except KeyboardInterrupt:
         sys.exit(128 + signal.SIGINT)

@@ -98,5 +98,5 @@ class CaseRows:
     def _first(self, controller: str) -> int:
         """Return the place of the first row of a controller."""
         if controller not in self.controllers:
-            raise DdctError(f'there are no rows of {controller}: run make benchmark-rows')
+            raise DdctError(f'there are no rows of {controller}: run tools/run benchmark_rows')
         return self.controllers.index(controller) * self.cases

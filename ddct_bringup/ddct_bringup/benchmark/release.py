@@ -3,12 +3,9 @@
 """
 Rows of the packaged controllers on the development cases, which are kept with a release.
 
-    make benchmark-rows
-
-computes them and writes them into the sources. It goes on with what an interruption left.
+`tools/run benchmark_rows` computes them and writes them into the sources.
 """
 
-import sys
 from dataclasses import dataclass, replace
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -33,11 +30,11 @@ from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.registry import own_controller_names
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import write_bytes
-from ddct_plant.program.command_line import run_program
 
 ROWS = 'development.parquet'
 """File with the rows, of which each benchmark has a copy."""
-_PROGRAM = 'make benchmark-rows'
+PROGRAM = 'tools/run benchmark_rows'
+"""Command that computes the rows again, in a clone."""
 _CASES, _CODE = b'cases_digest', b'code_digest'
 _VERSION, _COMMIT = b'version', b'commit'
 _OUTCOME = ('valid', 'reason', STATE, 'why')
@@ -60,18 +57,18 @@ class ReleaseRows:
         return (
             'the development rows of the packaged controllers were computed by other code '
             f'({self.origin.text}) than all other rows ({origin.text}): differences between them '
-            f'may be those of the code. {_PROGRAM}, in a clone, computes these rows again'
+            f'may be those of the code. {PROGRAM}, in a clone, computes these rows again'
         )
 
     def of(self, cases: Cases) -> 'ReleaseRows':
         """Return the rows of the cases that run; raise DdctError for cases without rows."""
         if cases.digest != self.cases_digest:
-            raise DdctError(f'{ROWS} has the rows of other cases: run {_PROGRAM}')
+            raise DdctError(f'{ROWS} has the rows of other cases: run {PROGRAM}')
         campaign = cases.planned
         samples, each = campaign.samples, cases.whole.samples
         whole = [case // samples * each + case % samples for case in range(campaign.cases)]
         if max(whole) >= self.rows.cases:
-            raise DdctError(f'{ROWS} lacks cases: run {_PROGRAM}')
+            raise DdctError(f'{ROWS} lacks cases: run {PROGRAM}')
         return replace(self, rows=self.rows.of_cases(whole))
 
 
@@ -112,7 +109,7 @@ def write_release_rows(work: Path, target: Path, workers: int | None = None) -> 
     resume = (work / MANIFEST).exists()
     if resume and (before := RecordedCampaign.read(work).origin).code != CodeOrigin.here().code:
         raise DdctError(
-            f'it has runs of other code, {before.text}: remove it, and run {_PROGRAM} again',
+            f'it has runs of other code, {before.text}: remove it, and run {PROGRAM} again',
             place=work,
         )
     carry_out(campaign, packaged_limits(), work, workers=workers, resume=resume)
@@ -136,13 +133,3 @@ def _write_table(table: pa.Table, path: Path) -> None:
         use_dictionary=[name for name in table.column_names if name not in numbers],
         use_byte_stream_split=numbers,
     )
-
-
-def _main(argv: list[str]) -> int:
-    work = Path(argv[0]) if argv else Path('runs') / 'benchmark_rows'
-    write_release_rows(work, Path(__file__).parent / 'packaged')
-    return 0
-
-
-if __name__ == '__main__':
-    sys.exit(run_program(_PROGRAM, _main, None))

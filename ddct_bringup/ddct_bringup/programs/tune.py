@@ -26,7 +26,7 @@ SPEC has the options with their ranges, objectives, constraints and cases: docs/
 DIR/{BEST} is the best as a controller file, DIR/front/ has the others of the front, DIR/{PAGE}
 shows the front, what decides, convergence, and the figures on held-out cases; DIR/{RESULT} has the
 same as JSON. After an interruption --resume computes what is missing, with the same result. It
-needs Optuna: make tune-extra.
+needs Optuna: make setup EXTRAS=tune.
 """
 
 

@@ -54,7 +54,8 @@ def require_optuna() -> str:
         return importlib.metadata.version('optuna')
     except importlib.metadata.PackageNotFoundError as error:
         raise DdctError(
-            'ddct tune needs Optuna, which is missing: run make tune-extra, or pip install optuna'
+            'ddct tune needs Optuna, which is missing: run make setup EXTRAS=tune, '
+            'or pip install optuna'
         ) from error
 
 

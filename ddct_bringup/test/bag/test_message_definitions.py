@@ -82,7 +82,7 @@ def test_a_message_made_without_ros_is_serialised_as_one_of_ros(type_name):
 
 @pytest.mark.parametrize('type_name', sorted({topic.type for topic in TOPICS}))
 def test_the_definition_in_our_file_is_that_of_rosbags(type_name):
-    """`python -m definitions` in tools/ writes the file again."""
+    """`tools/run definitions` writes the file again."""
     assert load_definition(type_name) == definition_in(all_types(), type_name)
     ours = type(message_class(type_name)())
     assert ours is not all_types().types[type_name], 'it was not taken from the file'

@@ -301,7 +301,7 @@ def test_rows_of_the_release_that_other_code_computed_are_named_wherever_the_res
     assert cases['release_rows'] == {'version': '0.9.0', 'commit': 'c0ffee' * 4, 'code': '7' * 64}
     for text in (printed, (out / PAGE).read_text(encoding='utf-8'), cases['other_code']):
         assert f'by other code ({before}) than all other rows ({here.text})' in text
-        assert 'make benchmark-rows, in a clone, computes these rows again' in text
+        assert 'tools/run benchmark_rows, in a clone, computes these rows again' in text
     notes = {run['run']: run['note'] for run in document['runs']}
     assert code == 0
     assert notes[ROWS] == f'computed by other code: {before}'
@@ -320,7 +320,7 @@ def test_rows_of_other_code_are_not_taken_when_the_release_is_computed_again(
     monkeypatch.setattr('ddct_bringup.manifest.origin.code_digest', lambda: '0' * 64)
     with refused(DdctError, place='rows') as caught:
         write_release_rows(work, tmp_path, workers=1)
-    assert 'remove it, and run make benchmark-rows again' in str(caught.value)
+    assert 'remove it, and run tools/run benchmark_rows again' in str(caught.value)
     assert content_of(work) == before
 
 

@@ -86,5 +86,5 @@ def test_damaged_update_times_are_refused(tmp_path: Path, text: str) -> None:
 def test_rows_with_fewer_cases_than_their_specification_are_refused(tmp_path: Path) -> None:
     table = pa.table({'controller': ['pi'] * 3})
     rows = ReleaseRows(CaseRows(table), Cases.packaged().digest, CodeOrigin.here())
-    with pytest.raises(DdctError, match=f'{ROWS} lacks cases: run make benchmark-rows'):
+    with pytest.raises(DdctError, match=f'{ROWS} lacks cases: run tools/run benchmark_rows'):
         rows.of(Cases.packaged())

@@ -14,7 +14,7 @@ from ddct_controllers.policy import PolicyController, observed_names
 from ddct_plant.base.errors import DdctError, ParameterError
 
 gymnasium = pytest.importorskip(
-    'gymnasium', reason='Gymnasium, an optional extra, is absent: make gym-extra'
+    'gymnasium', reason='Gymnasium, an optional extra, is absent: EXTRAS=gym'
 )
 pytestmark = pytest.mark.slow
 SHORT = {'duration_s': 1.3}

@@ -13,7 +13,7 @@ from tuning_pages import ENGAGED, FILE, VARIED, commands_of, compared_settings
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
 
 pytestmark = pytest.mark.slow
-pytest.importorskip('optuna', reason='Optuna, an optional extra, is absent: make tune-extra')
+pytest.importorskip('optuna', reason='Optuna, an optional extra, is absent: EXTRAS=tune')
 SENSORS = {'engine_speed': {'noise_rad_s': 1e-7, 'delay_s': 0.01}}
 
 

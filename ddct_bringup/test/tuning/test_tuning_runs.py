@@ -316,7 +316,7 @@ def test_without_optuna_a_line_says_what_to_install(
     monkeypatch.setattr(study.importlib.metadata, 'version', missing)
     assert main(['--controller', 'pi', '--spec', 'pi_launches', '--out', str(tmp_path / 'o')]) == 1
     complaint = capsys.readouterr().err
-    assert 'make tune-extra' in complaint and complaint.count('\n') == 1
+    assert 'make setup EXTRAS=tune' in complaint and complaint.count('\n') == 1
 
 
 def test_options_that_scenarios_give_differently_must_be_tuned(tmp_path: Path) -> None:

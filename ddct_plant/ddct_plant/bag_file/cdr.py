@@ -59,7 +59,7 @@ class MessageLayouts:
         """
         known = self._layouts.setdefault(len(cdr), [])
         # Equal lengths at the same places mean the same layout, so a walk is seldom needed. With
-        # a walk for each message `make bench` shows 2.5 for one process, not 1.6.
+        # a walk for each message `tools/run bench` shows 2.5 for one process, not 1.6.
         for layout in known:
             if value & layout.lengths == layout.length_values:
                 return layout

@@ -20,7 +20,7 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import read_json
 
 KEPT = Path(__file__).with_name('message_definitions.json')
-"""Definitions of the types of our topics, by type; `python -m definitions` in tools/ writes it."""
+"""Definitions of the types of our topics, by type; `tools/run definitions` writes it."""
 STRING = 'string'
 PRIMITIVES = {
     **{'bool': (1, '?'), 'byte': (1, 'B'), 'char': (1, 'b')},

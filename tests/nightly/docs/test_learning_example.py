@@ -11,7 +11,7 @@ from support.documented import ROOT
 
 from ddct_bringup.api import run
 
-pytest.importorskip('gymnasium', reason='Gymnasium, an optional extra, is absent: make gym-extra')
+pytest.importorskip('gymnasium', reason='Gymnasium, an optional extra, is absent: EXTRAS=gym')
 
 
 def test_half_of_the_search_learns_to_engage_worn_and_new_clutches(tmp_path: Path) -> None:

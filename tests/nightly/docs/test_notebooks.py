@@ -23,7 +23,7 @@ from small_benchmark import use_small_release
 use_small_release(Path({place!r}), MonkeyPatch())
 """
 """Code that puts a benchmark of few cases in the place of the packaged one of minutes."""
-MAKE = 'run: python -P -m notebook_outputs'
+MAKE = 'run: tools/run notebook_outputs'
 
 
 @EACH

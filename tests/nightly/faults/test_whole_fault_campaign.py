@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Every case of the fault campaign ends as stated; `make faults` prints what was observed."""
+"""Every case of the fault campaign ends as stated; `tools/run faults` prints what was observed."""
 
 import pytest
 

@@ -38,7 +38,7 @@ def test_a_benchmark_has_the_reason_of_each_crash_in_development_and_held_out_ca
 def test_trials_of_a_tuning_go_on_after_one_that_crashes(
     tmp_path: Path,
 ) -> None:
-    pytest.importorskip('optuna', reason='Optuna, an optional extra, is absent: make tune-extra')
+    pytest.importorskip('optuna', reason='Optuna, an optional extra, is absent: EXTRAS=tune')
     vary = {'wear_gain': {'distribution': 'uniform', 'low': 0.98, 'high': 1.02}}
     found = made_tuning(
         tmp_path / 'out',

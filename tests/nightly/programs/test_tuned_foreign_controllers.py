@@ -17,7 +17,7 @@ from ddct_bringup.tuning.tables import TRIALS
 from ddct_controllers.from_file.c_library.library import HEADER, TEMPLATE
 from ddct_controllers.registry import controller_spec
 
-pytest.importorskip('optuna', reason='Optuna, an optional extra, is absent: make tune-extra')
+pytest.importorskip('optuna', reason='Optuna, an optional extra, is absent: EXTRAS=tune')
 pytestmark = [pytest.mark.slow, pytest.mark.compiler]
 
 RANGES = CONTENT['parameters']

@@ -97,7 +97,8 @@ def _fmpy() -> Any:
         import fmpy
     except ImportError as error:
         raise DdctError(
-            'fmu: FMPy is not installed: `make fmu`, or `python -m pip install fmpy` where numpy '
+            'fmu: FMPy is not installed: `make setup EXTRAS=fmu`, or '
+            '`python -m pip install fmpy` where numpy '
             'is 2.1 or newer'
         ) from error
     return fmpy

@@ -20,10 +20,10 @@ Vector = np.ndarray | Sequence[float]
 BACKENDS = ('daqp', 'osqp')
 """Names of the backends, which are those of the solvers' packages."""
 DEFAULT_BACKEND = 'daqp'
-"""Name of the backend that is fastest at equal accuracy; `make bench` measures both."""
+"""Name of the backend that is fastest at equal accuracy; `tools/run bench` measures both."""
 ITERATION_LIMITS = {'daqp': 1000, 'osqp': 20_000}
 """
-Limits by backend, ten and four times what the hardest programs of `make bench` need.
+Limits by backend, ten and four times what the hardest programs of `tools/run bench` need.
 
 OSQP's iterations are far cheaper.
 """

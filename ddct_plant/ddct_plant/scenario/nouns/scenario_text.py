@@ -26,8 +26,8 @@ SCHEMA_VERSION = 2
 """Version of the keys of a scenario file; a file without a version has this one."""
 NAME, SET = 'name', 'set'
 KEYS = (SCHEMA_KEY, NAME, DESCRIPTION, CAR, DRIVE, SET, 'controllers', 'adjusted')
-CONVERTER = 'python -P -m convert_scenario'
-"""Command, in `tools/`, that makes a car, a drive and a scenario of a scenario file of before."""
+CONVERTER = 'tools/run convert_scenario'
+"""Command, in a clone, that makes a car, a drive and a scenario of a scenario file of before."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ def _require_parts(content: Mapping[str, Any]) -> None:
         belongs = ', '.join(f'{keys} to the {noun}' for noun, keys in moved.items() if keys)
         raise ParameterError(
             f'{others[0]}: a scenario names a car and a drive, to which its keys moved: '
-            f'{belongs}; {CONVERTER} FILE, in tools/, writes the three files',
+            f'{belongs}; {CONVERTER} FILE, in a clone, writes the three files',
             key=others[0],
         )
     require_schema_version(content, SCHEMA_VERSION)

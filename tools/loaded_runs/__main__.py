@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""`make loaded-runs`: lock-step runs of the graph on busy cores, each with the headless hash."""
+"""Lock-step runs of the graph on busy cores, each with the headless hash."""
 
 import argparse
 import os
@@ -30,7 +30,7 @@ PLANS = {
 
 def main() -> int:
     """Run the program and return its exit code."""
-    parser = argparse.ArgumentParser(prog='make loaded-runs', description=__doc__)
+    parser = argparse.ArgumentParser(prog='tools/run loaded_runs', description=__doc__)
     parser.add_argument('--runs', type=int, default=1000)
     options = parser.parse_args()
     os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
