@@ -178,8 +178,7 @@ def _third_party(name: str) -> ControllerSpec[Controller]:
     if '.' in name or '/' in name:
         raise ParameterError(
             f'{name} is no controller file: give a Python file or a YAML file; for an FMU or a '
-            'library in C, a YAML file that names it (docs/controllers/fmu_controller.md, '
-            'docs/controllers/c_controller.md)',
+            'library in C, a YAML file that names it (docs/controllers/files.md)',
             key=name,
         )
     choices = ', '.join(controller_names())

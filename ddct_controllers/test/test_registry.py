@@ -81,7 +81,7 @@ def test_an_unknown_name_lists_the_known_ones():
 def test_a_file_of_another_kind_leads_to_those_that_are_needed(name):
     with refused(ParameterError, name) as caught:
         make_controller(name, SETTINGS.known)
-    assert 'docs/controllers/fmu_controller.md' in str(caught.value)
+    assert 'docs/controllers/files.md' in str(caught.value)
 
 
 def test_the_gain_of_a_printed_controller_is_its_only_option():

@@ -22,8 +22,8 @@ PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
     'page',
     [
         'README.md',
-        'docs/controllers/writing_a_controller.md',
-        pytest.param('docs/controllers/controller_files.md', marks=pytest.mark.nightly),
+        'docs/controllers/writing.md',
+        pytest.param('docs/controllers/files.md', marks=pytest.mark.nightly),
     ],
 )
 def test_python_examples_run(page: str, tmp_path: Path) -> None:
@@ -41,7 +41,7 @@ def test_the_example_of_a_package_runs_without_ros(
 
 
 def test_the_file_of_a_transfer_function_is_ls7(tmp_path: Path) -> None:
-    page = ROOT / 'docs' / 'controllers' / 'loop_shaping.md'
+    page = ROOT / 'docs' / 'controllers' / 'pi_and_loop_shaping.md'
     text = page.read_text(encoding='utf-8').split('```yaml\n')[1].split('```')[0]
     path = tmp_path / 'mine.yaml'
     path.write_text(text, encoding='utf-8')

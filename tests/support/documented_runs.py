@@ -31,7 +31,7 @@ def example_on(page: str) -> str:
 
 def install_example(site: Path) -> None:
     """Install the class that the page shows, and what new-controller writes, as `my_slip`."""
-    code = example_on('docs/controllers/writing_a_controller.md')
+    code = example_on('docs/controllers/writing.md')
     package, record = site / 'my_package', site / 'my_package-1.0.dist-info'
     for folder in (package, record):
         folder.mkdir(parents=True)
@@ -60,7 +60,7 @@ def install() -> Path:
 def furnished(install: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a folder with what commands read and write, and the example in `site`."""
     folder = tmp_path_factory.mktemp('documented')
-    without = shutil.ignore_patterns('images', 'generator')  # no command reads them
+    without = shutil.ignore_patterns('images', 'website')  # no command reads them
     shutil.copytree(ROOT / 'docs', folder / 'docs', ignore=without)
     for part in (
         'ddct_controllers/ddct_controllers/from_file/c_library/template',

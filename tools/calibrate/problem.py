@@ -35,7 +35,7 @@ ROWS = tuple(row.controller for row in THESIS_TABLE if row.use == CALIBRATED)
 
 @dataclass(frozen=True)
 class FittedParameter:
-    """One fitted number and its bounds, whose reasons are in docs/thesis/calibration.md."""
+    """One fitted number and its bounds, whose reasons are in docs/thesis/predictions.md."""
 
     symbol: str
     unit: str

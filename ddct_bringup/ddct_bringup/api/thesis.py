@@ -44,7 +44,7 @@ def thesis_numbers() -> ThesisNumbers:
     """
     Compute every printed number of the thesis and compare it with the print, in seconds.
 
-    The outcomes are those of docs/thesis/thesis_gate.md. Raise DdctError when a claim of that
+    The outcomes are those of docs/thesis/reproducing.md. Raise DdctError when a claim of that
     page does not hold.
     """
     rows = judge(listed_numbers(), compute(SOURCES))

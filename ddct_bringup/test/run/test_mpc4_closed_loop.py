@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The claims of docs/controllers/mpc4.md on clutch and engine together hold in its scenario."""
+"""The claims of docs/controllers/mpc.md on clutch and engine together hold in its scenario."""
 
 import math
 from typing import Any

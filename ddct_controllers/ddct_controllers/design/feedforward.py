@@ -22,7 +22,7 @@ TORQUE_RATE_WEIGHT = 0.03
 """
 Weight rho in rad/s per N m/s: price of torque beyond the static law.
 
-docs/controllers/feedforward.md has the argument.
+docs/controllers/launching.md has the argument.
 """
 
 _ENGINE, _CLUTCH, _LOAD = TORQUES.places('engine_torque', 'clutch_torque', 'load_torque')

@@ -24,7 +24,7 @@ from ddct_plant.files.input_file import located
 
 Base = TypeVar('Base')
 SUFFIX = '.py'
-_PAGE = 'docs/controllers/writing_a_controller.md'
+_PAGE = 'docs/controllers/writing.md'
 
 
 def python_spec(file: str, *, anew: bool = True) -> ControllerSpec[Controller]:

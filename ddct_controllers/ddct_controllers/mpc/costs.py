@@ -30,7 +30,7 @@ SLIP_WEIGHT, SLIP_ACCELERATION_WEIGHT = 1.0, math.sqrt(0.05)
 Weights of w_d per rad/s and of dw_d/dt per rad/s^2: square roots, as (4.1) does not square Q.
 """
 DEMAND_WEIGHT = 0.14
-"""Weight of the difference of C_m and the demand, per N m; derived in docs/controllers/mpc4.md."""
+"""Weight of the difference of C_m and the demand, per N m; derived in docs/controllers/mpc.md."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class TableRow(OptionGroup):
         driveline: DrivelineParameters | None = None,
         actuator: ActuatorParameters = PRINTED_ACTUATOR,
     ) -> MpcSettings:
-        """Return the row's settings; docs/thesis/mpc_readings.md has other readings of Q and R."""
+        """Return the row's settings; docs/thesis/readings.md has other readings of Q and R."""
         slip, at_the_end = map(rpm_from_rad_s, (self.output_weight, self.final_weight))
         return MpcSettings(
             prediction_steps=self.prediction_steps,

@@ -190,6 +190,6 @@ SPECS = (
 """
 Specifications of [2] and [3] of the thesis by name.
 
-Tested to be stable at wear gains from 0.7 to 1.3: docs/controllers/state_of_art.md has the
+Tested to be stable at wear gains from 0.7 to 1.3: docs/controllers/least_jerk.md has the
 reasons.
 """

@@ -15,16 +15,19 @@ from support.fmu import write_fmu
 from ddct_bringup.programs import compare
 from ddct_controllers.registry import controller_spec
 
-PAGE = 'docs/controllers/fmu_controller.md'
+PAGE = 'docs/controllers/files.md'
 BLOCKS = [block for block in blocks() if block.page == PAGE]
 LINES = [line for block in BLOCKS for line in block.lines]
+COMPARISONS = [line for line in LINES if line.startswith('ddct compare') and 'mine.yaml' in line]
 PYTHON = '.venv/bin/python '
 FMPY = '.venv/bin/fmpy '
 
 
 @pytest.fixture
 def template(folder: Path) -> str:
-    (text,) = [block.text for block in BLOCKS if block.language == 'yaml']
+    (text,) = [
+        block.text for block in BLOCKS if block.language == 'yaml' and 'fmu:\n' in block.text
+    ]
     Path('mine.yaml').write_text(text, encoding='utf-8')
     return 'mine.yaml'
 
@@ -38,8 +41,8 @@ def test_its_template_and_commands_run(template: str, folder: Path) -> None:
         done = subprocess.run([sys.executable, *python, *words], capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
     assert 'rev/min' in done.stdout
-    first, _ = [line.removeprefix('ddct compare ') for line in LINES if line.startswith('ddct')]
-    assert compare.main(shlex.split(first)) == 0
+    first, _ = COMPARISONS
+    assert compare.main(shlex.split(first.removeprefix('ddct compare '))) == 0
     pi, mine = json.loads((folder / 'runs' / 'mine' / 'scores.json').read_text())['runs']
     assert (pi['controller'], mine['controller']) == ('pi', 'mine')
     assert mine['valid']
@@ -47,6 +50,6 @@ def test_its_template_and_commands_run(template: str, folder: Path) -> None:
 
 def test_the_option_that_it_changes_is_one(template: str) -> None:
     write_fmu(Path('mine.fmu'), 3)
-    changed = shlex.split([line for line in LINES if '--set' in line][0])
+    changed = shlex.split(COMPARISONS[1])
     key = changed[changed.index('--set') + 1].partition('=')[0]
     assert key.removeprefix('controllers.mine.') in (controller_spec(template).options or {})

@@ -4,7 +4,7 @@
 What controllers that game the judge share: an honest controller, whose commands they change.
 
 Each file beside this one has one class, whose docstring says what it games. They use the public
-interface alone: docs/controllers/writing_a_controller.md.
+interface alone: docs/controllers/writing.md.
 """
 
 from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement

@@ -39,7 +39,7 @@ _TRANSLATED = (
 
 
 def thesis_tables(record: ThesisRecord) -> dict[str, TextTable]:
-    """Return the tables of `thesis_record` by their names in docs/controllers/loop_shaping.md."""
+    """Return the tables of `thesis_record` by the names that pages show them by."""
     tables = {
         'specifications': _specification_table(),
         'network_steps': TextTable(

@@ -22,7 +22,7 @@ _SCALARS = attrgetter(
 )
 """Scalars of a measurement, in the order of the struct ddct_measurement."""
 _LAYOUT = struct.Struct('q7d')
-_EXAMPLE = 'start from the template in docs/controllers/c_controller.md'
+_EXAMPLE = 'start from the template in docs/controllers/files.md'
 
 
 class LibraryError(Exception):

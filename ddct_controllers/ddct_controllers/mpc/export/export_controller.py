@@ -39,7 +39,7 @@ def export_controller(
     """
     Write `controller`, which `settings` built, as C into `folder`, with an example.
 
-    Return the paths of the files, which docs/controllers/control_unit.md describes. Raise
+    Return the paths of the files, which docs/controllers/files.md describes. Raise
     ParameterError when the C lacks a feature of the controller, DdctError when the folder is not
     empty (with `overwrite`: contains a file in the way that is not such an export) or cannot be
     written.
