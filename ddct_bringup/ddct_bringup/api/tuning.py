@@ -39,6 +39,7 @@ def tune(
     spec: str | Path | Mapping[str, Any],
     out: str | Path,
     *,
+    car: str | Path | None = None,
     workers: int | None = None,
     resume: bool = False,
 ) -> TuningResults:
@@ -46,13 +47,15 @@ def tune(
     Tune a controller, by name or file, into the folder `out`, as `ddct tune` does.
 
     `spec` is a file, the name of a packaged one, or its content as a mapping; files that a mapping
-    names are relative to the working directory.
+    names are relative to the working directory. With a `car` all cases have that car, and are
+    drawn around its values.
     """
     import pandas
 
     folder = Path(out)
     given = spec if isinstance(spec, Mapping) else str(spec)
-    result = tune_into(controller, given, folder, workers=workers, resume=resume)
+    named = None if car is None else str(car)
+    result = tune_into(controller, given, folder, car=named, workers=workers, resume=resume)
     front = pandas.DataFrame(_front_rows(result.front)).set_index('number')
     tried = read_parquet(folder / TRIALS).to_pandas().set_index(NUMBER)
     return TuningResults(front, tried, result, folder / BEST)

@@ -11,7 +11,12 @@ from ddct_bringup.programs.options.of_runs import add_workers_option
 from ddct_bringup.tuning.specification.packaged_specs import packaged_specs
 from ddct_bringup.tuning.tuned_names import BEST, PAGE, RESULT
 from ddct_plant.files.output_file import require_place
-from ddct_plant.program.command_line import ProgramParser, run_program, show_and_write
+from ddct_plant.program.command_line import (
+    ProgramParser,
+    complain,
+    run_program,
+    show_and_write,
+)
 from ddct_plant.program.signals import stop_signals
 
 PROGRAM = 'ddct tune'
@@ -20,6 +25,7 @@ examples:
   ddct tune --controller pi --spec pi_launches --out tuned/pi      a packaged specification
   ddct tune --controller mine.yaml --spec mine_tuning.yaml --out tuned/mine
   ddct tune --controller mine.yaml --spec mine_tuning.yaml --out tuned/mine --resume
+  ddct tune --controller pi --spec pi_launches --car mycar.yaml --out tuned/mycar
   ddct compare --controllers pi,tuned/pi/{BEST} --scenario launch --headless --out runs/tuned
 
 SPEC has the options with their ranges, objectives, constraints and cases: docs/use/tune.md.
@@ -44,6 +50,8 @@ def _tune(argv: list[str]) -> int:
             options.controller,
             options.spec,
             options.out,
+            car=options.car,
+            left_out=_say_left_out,
             workers=options.workers,
             resume=options.resume,
             stopped=lambda: bool(stops),
@@ -56,6 +64,10 @@ def _tune(argv: list[str]) -> int:
 
     show_and_write(options.json, result, show)
     return 0
+
+
+def _say_left_out(scenario: str, reason: str) -> None:
+    complain(PROGRAM, f'{scenario} is left out, since the car cannot drive it: {reason}')
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -72,6 +84,11 @@ def _parser() -> argparse.ArgumentParser:
         required=True,
         metavar='SPEC.yaml',
         help=f'what is searched and wanted; packaged: {", ".join(packaged_specs())}',
+    )
+    parser.add_argument(
+        '--car',
+        metavar='NAME|FILE',
+        help='car of all cases, around which those are drawn; default: those of the scenarios',
     )
     parser.add_argument('--out', type=Path, metavar='DIR', required=True, help='folder for it')
     parser.add_argument('--resume', action='store_true', help='go on with the tuning in DIR')

@@ -36,19 +36,32 @@ def why_all_invalid(trials: Sequence[Trial]) -> str:
 
 
 def why_no_front(trials: Sequence[Trial], spec: TuningSpec) -> str:
-    """Return what most trials break, with the value that comes nearest."""
+    """Return what most trials break, and what the trial that comes nearest breaks, with values."""
     if why := why_all_invalid(trials):
         return why
     reasons = Counter(each.reason for each in trials if each.state == INFEASIBLE)
     title, count = reasons.most_common(1)[0]
-    nearest = ''
-    for constraint in spec.constraints:
-        values = [each.estimate(constraint.goal, spec) for each in trials]
-        known = [value for value in values if value is not None]
-        if constraint.title == title and known:
-            best = min(known, key=constraint.violation)
-            nearest = f'; the nearest value is {best:.4g}'
-    return (
-        f'no trial keeps all constraints: {count} of {len(trials)} break {title}{nearest}: loosen '
-        'it, or widen the ranges'
+    nearest = min(
+        (broken for each in trials if (broken := _broken(each, spec)) is not None),
+        key=lambda broken: sum(excess for excess, _ in broken),
+        default=(),
     )
+    values = ' and '.join(text for _, text in nearest)
+    found = f'; the nearest trial has {values}' if values else ''
+    return (
+        f'no trial keeps all constraints: {count} of {len(trials)} break {title}{found}: loosen '
+        'that, or widen the ranges'
+    )
+
+
+def _broken(trial: Trial, spec: TuningSpec) -> Sequence[tuple[float, str]] | None:
+    """Return by how much a trial breaks which constraints, None where a value is unknown."""
+    found = []
+    for constraint in spec.constraints:
+        value = trial.estimate(constraint.goal, spec)
+        if value is None:
+            return None
+        if constraint.breaks(value):
+            text = f'{constraint.goal.title} {value:.4g} for {constraint.title}'
+            found.append((constraint.violation(value), text))
+    return found

@@ -13,7 +13,7 @@ from ddct_bringup.manifest.inputs import INPUTS, InputFiles, full_path
 from ddct_bringup.manifest.limits import NamedLimits
 from ddct_bringup.manifest.manifest import TUNING, Manifest, read_manifest, require_same_plan
 from ddct_bringup.manifest.origin import CodeOrigin
-from ddct_bringup.tuning.specification.development import BENCHMARK, CAMPAIGN
+from ddct_bringup.tuning.specification.development import CAMPAIGN
 from ddct_bringup.tuning.specification.spec import tuning_spec_of
 from ddct_bringup.tuning.tuning import Tuning
 from ddct_controllers.from_file.controller_file import is_controller_file
@@ -56,11 +56,10 @@ class TuningPlan:
         """Return the plan of a tuning, and take its files as `inputs`."""
         judged, spec = tuning.judged, tuning.spec
         folder, content = '.', dict(spec.content)
-        if BENCHMARK not in content[CAMPAIGN]:
-            content[CAMPAIGN] = with_places(
-                content[CAMPAIGN],
-                lambda key, name: inputs.add(files_of(key, spec.folder / name)),
-            )
+        content[CAMPAIGN] = with_places(
+            content[CAMPAIGN],
+            lambda key, name: inputs.add(files_of(key, spec.folder / name)),
+        )
         if is_controller_file(judged.chosen):
             place = inputs.add(controller_files(judged.path))
             folder = Path(INPUTS, place).parent.as_posix()

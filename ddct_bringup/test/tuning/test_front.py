@@ -74,7 +74,7 @@ def test_the_best_of_equal_trials_is_the_first() -> None:
         ),
         (
             [trial(0, 1.0, 1.0, status=INFEASIBLE, state='stalled')],
-            'engaged at least 0.9; the nearest value is 0',
+            'engaged at least 0.9; the nearest trial has engaged 0 for engaged at least 0.9',
         ),
     ],
 )

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from refusals import refused
 
+from ddct_bringup.tuning.specification.other_car import in_car
 from ddct_bringup.tuning.specification.packaged_specs import packaged_specs
 from ddct_bringup.tuning.specification.parameters import Parameter
 from ddct_bringup.tuning.specification.spec import read_tuning_spec, tuning_spec_of
@@ -131,3 +132,25 @@ def test_values_are_short_and_within_the_range() -> None:
     assert Parameter('x', 0.12345678, 1, 'log', Option(0.5, '')).rounded(0.1234561) == 0.12345678
     time = Parameter('t', 0.0, 1.0, 'linear', Option(0.1, 'time', 's', whole_periods=True))
     assert time.rounded(0.4567) == 0.46
+
+
+def test_a_car_takes_the_place_of_that_of_the_cases_which_are_drawn_around_its_values(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / 'mine.yaml').write_text('base: city7\nvehicle: {mass_kg: 900}\n')
+    of_pi, car = controller_spec('pi'), str(tmp_path / 'mine.yaml')
+    spec, left_out = in_car(read_tuning_spec('pi_launches', of_pi), car, of_pi)
+    campaign = spec.development.campaign('pi', spec.folder)
+    assert campaign.spec.vary['vehicle.mass_kg'].ends == (720.0, 1170.0)
+    assert not left_out
+    settings = campaign.run(0).settings
+    assert settings.known.scenario.vehicle.mass_kg == 900.0
+    for cases in ({'benchmark': 'all'}, {'grid': {'scenario': ['launch', 'tip_in']}}):
+        given = tuning_spec_of({**GOOD, 'campaign': cases}, tmp_path, of_pi)
+        changed, left_out = in_car(given, car, of_pi)
+        assert 'tip_in' in left_out
+        names = changed.development.campaign('pi', tmp_path).spec.grid['scenario']
+        assert 'launch' in names
+        assert 'tip_in' not in names
+    with pytest.raises(ParameterError, match='has a car already'):
+        in_car(changed, car, of_pi)

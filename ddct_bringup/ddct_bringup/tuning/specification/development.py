@@ -29,6 +29,8 @@ from ddct_bringup.campaign.specification.parts import (
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import require_known
 from ddct_plant.files.input_file import located
+from ddct_plant.scenario.choices.scenarios import is_packaged
+from ddct_plant.scenario.nouns.keys import CAR
 
 CAMPAIGN, BENCHMARK = 'campaign', 'benchmark'
 _SHARES = (0.25, 0.5, 1.0)
@@ -47,10 +49,14 @@ class Development:
     """Number of samples of a benchmark that run at each point, None for all."""
 
     @classmethod
-    def of(cls, content: Any) -> 'Development':
-        """Return the cases of a specification; raise ParameterError that names the key."""
+    def of(cls, content: Any, folder: Path) -> 'Development':
+        """
+        Return the cases of a specification, whose files are relative to `folder`.
+
+        Raise ParameterError that names the key.
+        """
         if isinstance(content, Mapping) and BENCHMARK in content:
-            return cls._of_benchmark(content)
+            return cls._of_benchmark(content, folder)
         if not isinstance(content, Mapping):
             raise ParameterError(
                 f'{CAMPAIGN} is {content!r}: give keys of a campaign, or {{{BENCHMARK}: all}}',
@@ -70,13 +76,22 @@ class Development:
         return cls(dict(content))
 
     @classmethod
-    def _of_benchmark(cls, content: Mapping[str, Any]) -> 'Development':
-        keys = mapping_of(CAMPAIGN, content, (BENCHMARK, SAMPLES), f'{CAMPAIGN}.')
-        cases = dict(Cases.packaged().content)
+    def _of_benchmark(cls, content: Mapping[str, Any], folder: Path) -> 'Development':
+        keys = mapping_of(CAMPAIGN, content, (BENCHMARK, SAMPLES, CAR), f'{CAMPAIGN}.')
+        of_car = {}
+        if (car := keys.get(CAR)) is not None:
+            of_car = {CAR: str(car)}
+        packaged = Cases.packaged(car=in_folder(folder, str(car)) if of_car else None)
+        cases = {**packaged.content, **of_car}
         cases.pop(CONTROLLERS, None)
         known = cases[GRID][SCENARIO]
         names = keys[BENCHMARK]
         where = f'{CAMPAIGN}.{BENCHMARK}'
+        for name in names if isinstance(names, list) else ():
+            if name in packaged.left_out:
+                raise ParameterError(
+                    f'{where}: the car cannot drive {name}: {packaged.left_out[name]}', key=where
+                )
         if names == 'all':
             names = known
         if not isinstance(names, list) or not names:
@@ -125,6 +140,11 @@ class Development:
             random = content[RANDOM]
             content[RANDOM] = {OF: random[SAMPLES], **random, SAMPLES: self.samples}
         return Campaign(spec_of(content, folder))
+
+
+def in_folder(folder: Path, name: str) -> str:
+    """Return a packaged name, or the path of a file that a folder's specification names."""
+    return name if is_packaged(name) else str(folder / name)
 
 
 def parts_of(cases: Sequence[int], least: int = 1) -> list[Sequence[int]]:

@@ -93,7 +93,7 @@ def tuning_spec_of(
         parameters=parameters_of(given[PARAMETERS], controller),
         objectives=objectives,
         constraints=constraints,
-        development=Development.of(given[CAMPAIGN]),
+        development=Development.of(given[CAMPAIGN], folder),
         trials=int(_TRIALS.checked(TRIALS, given.get(TRIALS, _TRIALS.default))),
         seed=int(_SEED.checked(ROOT_SEED, given.get(ROOT_SEED, _SEED.default))),
     )
