@@ -14,7 +14,7 @@ from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.benchmark.plan import BenchmarkPlan, JudgedEntry, RecordedBenchmark
 from ddct_bringup.benchmark.release import ROWS, copy_release_rows, release_rows
 from ddct_bringup.campaign.campaign import Campaign
-from ddct_bringup.campaign.conduct import RESUME, carry_out_part
+from ddct_bringup.campaign.conduct import RESUME, carry_out_parts
 from ddct_bringup.campaign.plan import CampaignPlan, RecordedCampaign
 from ddct_bringup.campaign_report.reading import read_table
 from ddct_bringup.manifest.begun import begun_manifest
@@ -140,17 +140,13 @@ def campaigns_of(entry: JudgedEntry, cases: Cases, out: Path) -> dict[str, Campa
 def _compute(entry: JudgedEntry, cases: Cases, out: Path, options: Options) -> None:
     """Compute what is missing of a judged controller's runs."""
     mark_folder(out / entry.name)
+    parts = {}
     for name, campaign in campaigns_of(entry, cases, out).items():
         folder = out / entry.name / name
         print(f'{entry.name}: {name}, {campaign.runs} runs', file=sys.stderr, flush=True)
         mark_folder(folder)
-        carry_out_part(
-            RecordedCampaign.read(folder),
-            packaged_limits(),
-            folder,
-            workers=options.workers,
-            stopped=options.stopped,
-        )
+        parts[folder] = RecordedCampaign.read(folder)
+    carry_out_parts(parts, packaged_limits(), workers=options.workers, stopped=options.stopped)
 
 
 def read_judged_rows(folder: Path) -> JudgedRows:

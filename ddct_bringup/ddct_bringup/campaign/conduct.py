@@ -2,14 +2,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """Carry out a campaign: compute the missing shards, write each completely, and merge them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Self
+
+import pyarrow as pa
 
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import merge, parquet_bytes, schema_of
 from ddct_bringup.campaign.plan import CampaignPlan, NoPlan, RecordedCampaign, carried
-from ddct_bringup.campaign.shards import CampaignWork, runs_in, shards_of
+from ddct_bringup.campaign.shards import (
+    CampaignPart,
+    CampaignRun,
+    CampaignWork,
+    runs_in,
+    shards_of,
+)
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.manifest.begun import begun_manifest
 from ddct_bringup.manifest.file_states import require_unaltered
@@ -61,58 +71,114 @@ def carry_out(
         recorded, manifest = _begin(
             campaign, limits, out, resume=resume, stopped=stopped, one_machine=scheduler is None
         )
-        carry_out_recorded(recorded, manifest, limits, out, ready, stopped)
+        _compute([MissingShards.of(recorded, manifest, out)], limits, ready, stopped)
     return out / RESULTS
 
 
-def carry_out_part(
-    recorded: RecordedCampaign,
+def carry_out_parts(
+    parts: Mapping[Path, RecordedCampaign],
     limits: Limits,
-    out: Path,
     *,
     workers: int | None = None,
     stopped: Callable[[], bool] = lambda: False,
 ) -> None:
     """
-    Compute what is missing of a campaign that is a part of another result.
+    Compute what is missing of campaigns that are parts of another result, by their folders.
 
-    Raise as `carry_out`.
+    Shards of equal place are computed together. Raise as `carry_out`.
     """
-    with locked_folders(out), closing(workers_of(workers)) as ready:
-        begin_folder(out)
-        manifest = read_manifest(recorded.result)
-        carry_out_recorded(recorded, manifest, limits, out, ready, stopped)
+    with locked_folders(*parts), closing(workers_of(workers)) as ready:
+        missing = []
+        for out, recorded in parts.items():
+            begin_folder(out)
+            missing.append(MissingShards.of(recorded, read_manifest(recorded.result), out))
+        _compute(missing, limits, ready, stopped)
 
 
-def carry_out_recorded(
-    recorded: RecordedCampaign,
-    manifest: Manifest,
+@dataclass(frozen=True)
+class MissingShards:
+    """A campaign whose plan the manifest of its result has, and its shards."""
+
+    recorded: RecordedCampaign
+    campaign: Campaign
+    out: Path
+    shards: Mapping[Path, range]
+    """Cases of all shards by their files."""
+    missing: Sequence[Path]
+    """Files of the shards that are to be computed."""
+
+    @classmethod
+    def of(cls, recorded: RecordedCampaign, manifest: Manifest, out: Path) -> Self:
+        """Return the shards of a campaign in a folder, which are there or missing."""
+        campaign = recorded.campaign()
+        names = shards_of(campaign, recorded.plan.shard_size)
+        shards = {out / SHARDS / name: cases for name, cases in names.items()}
+        written = WrittenBefore(recorded.result, manifest)
+        return cls(
+            recorded, campaign, out, shards, [file for file in shards if not written.has(file)]
+        )
+
+    @property
+    def controllers(self) -> int:
+        """Number of controllers, which is that of the runs in a case."""
+        return len(self.campaign.controllers)
+
+    @property
+    def done(self) -> int:
+        """Number of runs that are there."""
+        cases = sum(len(self.shards[file]) for file in self.missing)
+        return self.campaign.runs - self.controllers * cases
+
+    def runs(self, place: int, shard: int) -> list[CampaignRun]:
+        """Return the runs of a missing shard, none after the last; `place` is the campaign's."""
+        if shard >= len(self.missing):
+            return []
+        indices = runs_in(self.campaign, self.shards[self.missing[shard]])
+        return [CampaignRun(place, index) for index in indices]
+
+    def write(self, shard: int, rows: pa.Table) -> None:
+        """Write a missing shard."""
+        file = self.missing[shard]
+        write_bytes(str(file), parquet_bytes(rows, self.controllers), RESUME)
+        keep_digests([file])
+
+    def merge(self) -> None:
+        """Write the results of all shards."""
+        require_unaltered(
+            self.out, [file.relative_to(self.out).as_posix() for file in self.shards]
+        )
+        rows = {file: self.controllers * len(cases) for file, cases in self.shards.items()}
+        schema = schema_of(self.campaign.spec)
+        merge(rows, self.controllers, schema, self.out / RESULTS, RESUME)
+        keep_digests([self.out / RESULTS])
+
+
+def _compute(
+    parts: Sequence[MissingShards],
     limits: Limits,
-    out: Path,
     workers: Workers,
     stopped: Callable[[], bool],
 ) -> None:
-    """Compute the missing shards of a campaign whose plan the manifest of its result has."""
-    campaign = recorded.campaign()
-    work = CampaignWork(campaign.spec, limits, recorded.origin.code, recorded.plan.spec_digest)
-    names = shards_of(campaign, recorded.plan.shard_size)
-    shards = {out / SHARDS / name: cases for name, cases in names.items()}
-    written = WrittenBefore(recorded.result, manifest)
-    missing = [file for file in shards if not written.has(file)]
-    groups = len(campaign.controllers)
-    done = campaign.runs - groups * sum(len(shards[file]) for file in missing)
-    blocks = (runs_in(campaign, shards[file]) for file in missing)
-    with Progress('runs', campaign.runs, done=done) as progress:
+    """Compute the missing shards of campaigns of one result, and merge them."""
+    work = CampaignWork(
+        [CampaignPart(part.campaign.spec, part.recorded.plan.spec_digest) for part in parts],
+        limits,
+        parts[0].recorded.origin.code,
+    )
+    blocks = (
+        [run for place, part in enumerate(parts) for run in part.runs(place, shard)]
+        for shard in range(max(len(part.missing) for part in parts))
+    )
+    runs, done = sum(part.campaign.runs for part in parts), sum(part.done for part in parts)
+    with Progress('runs', runs, done=done) as progress:
         for block in WorkEngine(work, workers, stopped, RESUME).done(blocks):
-            file = missing[block.place]
-            write_bytes(str(file), parquet_bytes(block.result, groups), RESUME)
-            keep_digests([file])
+            for part, rows in zip(parts, block.result, strict=True):
+                if len(rows):
+                    part.write(block.place, rows)
             done += len(block.items)
             progress.update(done)
-    require_unaltered(out, [file.relative_to(out).as_posix() for file in shards])
-    rows = {file: groups * len(cases) for file, cases in shards.items()}
-    merge(rows, groups, schema_of(campaign.spec), out / RESULTS, RESUME)
-    keep_digests([out / RESULTS])
+    for part in parts:
+        part.merge()
 
 
 def _begin(

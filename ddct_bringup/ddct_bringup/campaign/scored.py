@@ -45,8 +45,8 @@ class Scorer:
         planned = list(runs)
         # A value that is not finite becomes a reason in the row of its run.
         with np.errstate(all='ignore'):
-            found = self._together([run for run in planned if isinstance(run, PlannedRow)])
-            return [self._of(run, found.get(run.index)) for run in planned]
+            found = self._together(planned)
+            return [self._of(run, found.get(place)) for place, run in enumerate(planned)]
 
     def without_result(self, run: PlannedRow | ImpossibleRow, why: str) -> ScoredRow:
         """Return a run that ends the process in which it is computed, with the reason."""
@@ -64,34 +64,34 @@ class Scorer:
             scores = scored_headless(run.settings, run.controller, self.limits)
         return ScoredRow(run.index, name, run.seed, run.varied, scores, path)
 
-    def _together(self, runs: Sequence[PlannedRow]) -> dict[int, ScoredRun]:
-        """Return the scores of the runs that can be computed at once, by index."""
-        suited = _suited(runs) if self.at_once else []
-        results = run_batch(
-            [(run.settings, controller) for run, controller in suited], self.limits
-        )
+    def _together(self, runs: Sequence[PlannedRow | ImpossibleRow]) -> dict[int, ScoredRun]:
+        """Return the scores of the runs that can be computed at once, by their places."""
+        suited = _suited(runs) if self.at_once else {}
+        pairs = [(run.settings, controller) for run, controller in suited.values()]
+        results = run_batch(pairs, self.limits)
         return {
-            run.index: result
-            for (run, _), result in zip(suited, results, strict=True)
+            place: result
+            for place, result in zip(suited, results, strict=True)
             if result is not None
         }
 
 
 def are_together(campaign: Campaign) -> bool:
     """Return whether a batch takes the first run of at least half of the controllers."""
-    firsts = campaign.planned_at(range(0, campaign.runs, campaign.cases))
-    suited = _suited([run for run in firsts if isinstance(run, PlannedRow)])
-    return 2 * len(suited) >= len(campaign.controllers)
+    firsts = [*campaign.planned_at(range(0, campaign.runs, campaign.cases))]
+    return 2 * len(_suited(firsts)) >= len(campaign.controllers)
 
 
-def _suited(runs: Sequence[PlannedRow]) -> list[tuple[PlannedRow, Controller]]:
-    """Return the runs that a batch takes, with their controllers."""
+def _suited(
+    runs: Sequence[PlannedRow | ImpossibleRow],
+) -> dict[int, tuple[PlannedRow, Controller]]:
+    """Return the runs that a batch takes, with their controllers, by their places."""
     made: dict[int, tuple[KnownSettings, Controller]] = {}
-    found = []
-    for run in runs:
-        chosen, known = run.controller, run.settings.known
-        if chosen.compiled:
+    found = {}
+    for place, run in enumerate(runs):
+        if isinstance(run, ImpossibleRow) or run.controller.compiled:
             continue
+        chosen, known = run.controller, run.settings.known
         if id(chosen) not in made or made[id(chosen)][0] != known:  # runs in turn share one
             try:
                 made[id(chosen)] = known, make_controller(chosen, known)
@@ -99,12 +99,12 @@ def _suited(runs: Sequence[PlannedRow]) -> list[tuple[PlannedRow, Controller]]:
                 continue  # the run step by step gives the reason
         controller = made[id(chosen)][1]
         if not why_not_batchable(run.settings, controller):
-            found.append((run, controller))
-    foreign = {id(each): each for _, each in found if needs_trial(each)}
+            found[place] = run, controller
+    foreign = {id(each): each for _, each in found.values() if needs_trial(each)}
     failed = {
         key for key, why in zip(foreign, why_not_linear([*foreign.values()]), strict=True) if why
     }
-    return [(run, controller) for run, controller in found if id(controller) not in failed]
+    return {place: each for place, each in found.items() if id(each[1]) not in failed}
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,14 @@ So runs of one kind are together, and the controllers of a case share what is ma
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import chain, islice
+from typing import NamedTuple
 
 import pyarrow as pa
 
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import runs_table, schema_of
+from ddct_bringup.campaign.run_set import ImpossibleRow, PlannedRow
 from ddct_bringup.campaign.scored import Scorer, are_together
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.campaign.specification.named_files import digest_of
@@ -54,57 +57,14 @@ def require_code(digest: str) -> None:
 
 
 @dataclass(frozen=True)
-class CampaignWork(Work[int, pa.Table]):
-    """
-    Runs of a campaign by their indices, and their rows.
-
-    A worker needs nothing else, besides the files that the specification names.
-    """
+class CampaignPart:
+    """A campaign of some work: all that a worker needs, besides the files it names."""
 
     spec: CampaignSpec
-    limits: Limits
-    code: str
-    """Digest of the sources that compute the campaign."""
     digest: str
     """Digest of the specification and of the files that it names."""
 
-    def of_block(self, items: Sequence[int]) -> pa.Table:
-        """Return the rows of some runs; raise DdctError where this machine cannot compute them."""
-        require_code(self.code)
-        campaign, scorer = self._prepared()
-        found = scorer.scored(campaign.planned_at(items))
-        rows = runs_table(schema_of(self.spec), found)
-        self._require_unchanged()  # each run has read its handover file anew
-        return rows
-
-    def joined(self, parts: Sequence[pa.Table]) -> pa.Table:
-        """Return the rows of all parts."""
-        return pa.concat_tables(parts).combine_chunks()
-
-    def without_result(self, item: int, why: str) -> pa.Table:
-        """Return the row of a run that ends its process."""
-        campaign, scorer = self._prepared()
-        (run,) = campaign.planned_at([item])
-        return runs_table(schema_of(self.spec), [scorer.without_result(run, why)])
-
-    def error(self, items: Sequence[int], error: Exception) -> Exception:
-        """Return a DdctError that names the first run of the shard."""
-        what = str(error) if isinstance(error, DdctError) else f'{type(error).__name__}: {error}'
-        return DdctError(
-            f'run {items[0]} or one of its shard could not be computed ({what}); what is done '
-            'stays: go on with --resume'
-        )
-
-    def _prepared(self) -> tuple[Campaign, Scorer]:
-        """Return the campaign and its scorer; a worker builds them once."""
-        key = f'{self.digest} {self.spec.folder} {self.limits.origin}'
-        if key not in _kept:
-            self._require_unchanged()
-            _kept.clear()
-            _kept[key] = Campaign(self.spec), Scorer(self.limits)
-        return _kept[key]
-
-    def _require_unchanged(self) -> None:
+    def require_unchanged(self) -> None:
         """Raise DdctError where a file of the specification has changed since the beginning."""
         if digest_of(self.spec) != self.digest:
             raise DdctError(
@@ -113,5 +73,80 @@ class CampaignWork(Work[int, pa.Table]):
             )
 
 
-_kept: dict[str, tuple[Campaign, Scorer]] = {}
-"""Last campaign of this process, by its digests: its shards share what does not vary."""
+class CampaignRun(NamedTuple):
+    """A run of one of the campaigns of some work."""
+
+    campaign: int
+    """Place of its campaign."""
+    index: int
+
+
+@dataclass(frozen=True)
+class CampaignWork(Work[CampaignRun, list[pa.Table]]):
+    """
+    Runs of one or more campaigns, and their rows: one table for each campaign.
+
+    The items of a block are in the order of campaigns and of indices.
+    """
+
+    campaigns: Sequence[CampaignPart]
+    limits: Limits
+    code: str
+    """Digest of the sources that compute the campaigns."""
+
+    def of_block(self, items: Sequence[CampaignRun]) -> list[pa.Table]:
+        """Return the rows of some runs; raise DdctError where this machine cannot compute them."""
+        require_code(self.code)
+        runs = self._runs(items)
+        found = iter(Scorer(self.limits).scored(chain.from_iterable(runs)))
+        rows = [
+            runs_table(schema_of(part.spec), [*islice(found, len(its))])
+            for part, its in zip(self.campaigns, runs, strict=True)
+        ]
+        self._require_unchanged()  # each run has read its handover file anew
+        return rows
+
+    def joined(self, parts: Sequence[list[pa.Table]]) -> list[pa.Table]:
+        """Return the rows of all parts."""
+        return [pa.concat_tables(each).combine_chunks() for each in zip(*parts, strict=True)]
+
+    def without_result(self, item: CampaignRun, why: str) -> list[pa.Table]:
+        """Return the row of a run that ends its process."""
+        scorer = Scorer(self.limits)
+        return [
+            runs_table(schema_of(part.spec), [scorer.without_result(run, why) for run in its])
+            for part, its in zip(self.campaigns, self._runs([item]), strict=True)
+        ]
+
+    def error(self, items: Sequence[CampaignRun], error: Exception) -> Exception:
+        """Return a DdctError that names the first run of the block."""
+        what = str(error) if isinstance(error, DdctError) else f'{type(error).__name__}: {error}'
+        return DdctError(
+            f'run {items[0].index} or one of its shard could not be computed ({what}); what is '
+            'done stays: go on with --resume'
+        )
+
+    def _runs(self, items: Sequence[CampaignRun]) -> list[list[PlannedRow | ImpossibleRow]]:
+        """Return the runs of some items, campaign by campaign."""
+        return [
+            [*campaign.planned_at([each.index for each in items if each.campaign == place])]
+            for place, campaign in enumerate(self._prepared())
+        ]
+
+    def _prepared(self) -> list[Campaign]:
+        """Return the campaigns; a worker builds them once."""
+        keys = [f'{part.digest} {part.spec.folder}' for part in self.campaigns]
+        if {*keys} != {*_kept}:
+            self._require_unchanged()
+            _kept.clear()
+            for key, part in zip(keys, self.campaigns, strict=True):
+                _kept[key] = Campaign(part.spec)
+        return [_kept[key] for key in keys]
+
+    def _require_unchanged(self) -> None:
+        for part in self.campaigns:
+            part.require_unchanged()
+
+
+_kept: dict[str, Campaign] = {}
+"""Last campaigns of this process, by their digests: their shards share what does not vary."""

@@ -13,7 +13,7 @@ import pyarrow.compute as compute
 
 from ddct_bringup.benchmark.judged import seed_of
 from ddct_bringup.campaign.campaign import Campaign
-from ddct_bringup.campaign.conduct import carry_out_part
+from ddct_bringup.campaign.conduct import carry_out_parts
 from ddct_bringup.campaign.plan import CampaignPlan, RecordedCampaign
 from ddct_bringup.campaign.rows import CONTROLLER
 from ddct_bringup.campaign_report.reading import read_table
@@ -68,9 +68,8 @@ def compute_held_out(
     add_campaign(out, HELD_OUT, CampaignPlan.of(campaign, limits, out))
     folder = out / HELD_OUT
     mark_folder(folder)
-    carry_out_part(
-        RecordedCampaign.read(folder), tuning.limits, folder, workers=workers, stopped=stopped
-    )
+    parts = {folder: RecordedCampaign.read(folder)}
+    carry_out_parts(parts, tuning.limits, workers=workers, stopped=stopped)
 
 
 def held_out_trials(tuning: Tuning, out: Path, judged: Sequence[Trial]) -> Mapping[int, Trial]:

@@ -12,7 +12,14 @@ from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import differences, parquet_bytes, runs_table, schema_of
 from ddct_bringup.campaign.rows import VECTORISED
 from ddct_bringup.campaign.scored import Scorer
-from ddct_bringup.campaign.shards import CampaignWork, runs_in, shard_size_of, shards_of
+from ddct_bringup.campaign.shards import (
+    CampaignPart,
+    CampaignRun,
+    CampaignWork,
+    runs_in,
+    shard_size_of,
+    shards_of,
+)
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.manifest.code import code_digest
 from ddct_bringup.verdict.limits import packaged_limits
@@ -88,16 +95,40 @@ def test_a_shard_has_the_runs_of_all_controllers_in_its_cases() -> None:
     assert planned == [campaign.run(index) for index in (1, 2, 4, 5, 7, 8)]
 
 
+def work_of(*contents: dict[str, Any]) -> CampaignWork:
+    """Return the work of the campaigns of some specifications."""
+    campaigns = [Campaign(spec_of(content, Path())) for content in contents]
+    parts = [CampaignPart(each.spec, each.digest()) for each in campaigns]
+    return CampaignWork(parts, packaged_limits(), code_digest())
+
+
 def test_a_row_of_a_run_that_ends_its_process_has_the_reason() -> None:
-    campaign = Campaign(spec_of({'controllers': ['pi'], 'grid': {'wear_gain': [0.8, 1]}}, Path()))
-    work = CampaignWork(campaign.spec, packaged_limits(), code_digest(), campaign.digest())
-    whole = work.of_block([0, 1])
-    parts = [work.of_block([0]), work.without_result(1, 'its process crashed (SIGSEGV)')]
-    first, second = work.joined(parts).to_pylist()
+    work = work_of({'controllers': ['pi'], 'grid': {'wear_gain': [0.8, 1]}})
+    runs = [CampaignRun(0, 0), CampaignRun(0, 1)]
+    (whole,) = work.of_block(runs)
+    reason = 'its process crashed (SIGSEGV)'
+    parts = [work.of_block(runs[:1]), work.without_result(runs[1], reason)]
+    (joined,) = work.joined(parts)
+    first, second = joined.to_pylist()
     assert first == whole.to_pylist()[0]
     same = ('index', 'controller', 'wear_gain', 'seed')
     assert [second[name] for name in same] == [whole.to_pylist()[1][name] for name in same]
     assert (second['valid'], second['state']) == (False, 'invalid')
-    assert second['reason'] == 'its process crashed (SIGSEGV)'
-    again = work.joined([work.of_block([0]), work.of_block([1])])
+    assert second['reason'] == reason
+    (again,) = work.joined([work.of_block(runs[:1]), work.of_block(runs[1:])])
     assert parquet_bytes(again) == parquet_bytes(whole)
+
+
+def test_rows_of_campaigns_that_are_computed_together_are_those_of_each_alone() -> None:
+    first = {'controllers': ['pi'], 'grid': {'wear_gain': [0.8, 1.0]}}
+    second = {'controllers': ['ls8', 'pi'], 'grid': {'clutch': ['linear']}}
+    alone = [
+        work_of(each).of_block([CampaignRun(0, 0), CampaignRun(0, 1)])[0]
+        for each in (first, second)
+    ]
+    work = work_of(first, second)
+    runs = [CampaignRun(campaign, index) for campaign in (0, 1) for index in (0, 1)]
+    together = work.of_block(runs)
+    assert list(map(parquet_bytes, together)) == list(map(parquet_bytes, alone))
+    parts = [work.of_block(runs[:1]), work.of_block(runs[1:3]), work.of_block(runs[3:])]
+    assert list(map(parquet_bytes, work.joined(parts))) == list(map(parquet_bytes, alone))

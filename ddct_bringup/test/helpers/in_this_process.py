@@ -9,6 +9,7 @@ from typing import Any
 from unittest import mock
 
 from ddct_bringup.campaign import conduct
+from ddct_bringup.campaign.shards import CampaignRun
 from ddct_bringup.many_runs.local_workers import Ended, Submit
 from ddct_bringup.many_runs.work import Work
 
@@ -26,10 +27,11 @@ class OneByOne:
     def begin(self, work: Work[Any, Any]) -> Submit:
         self.begun += 1
 
-        def submit(items: Sequence[int]) -> Future[Any]:
+        def submit(items: Sequence[CampaignRun]) -> Future[Any]:
             future: Future[Any] = Future()
-            self.computed.append(items[0])
-            if error := self._breaks(items[0]):
+            first = items[0].index
+            self.computed.append(first)
+            if error := self._breaks(first):
                 future.set_exception(error)
             else:
                 future.set_result(work.of_block(items))
