@@ -13,6 +13,7 @@ other runs are in the batch. A run in which rounding grows beyond that has no re
 from collections import defaultdict
 from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -66,7 +67,7 @@ def _chunks(runs: Sequence[Run]) -> list[list[int]]:
     """Return the indices of the runs that are computed together, chunk by chunk."""
     groups: dict[Hashable, list[int]] = defaultdict(list)
     for index, (settings, _) in enumerate(runs):
-        groups[settings.scenario.score_window_s, loop_kind(settings)].append(index)
+        groups[loop_kind(settings)].append(index)
     return [chunk for group in groups.values() for chunk in _parts(runs, group)]
 
 
@@ -97,8 +98,8 @@ def _results(runs: Sequence[Run], limits: Limits) -> list[ScoredRun | None]:
             settings, controllers = zip(*runs, strict=True)
             stack = simulate_batch(settings, controllers)
             results: list[ScoredRun | None] = [None] * len(runs)
-            for length in np.unique(stack.last[~stack.unsure]).tolist():
-                for index, result in _of_length(runs, stack, length, limits):
+            for length, found in _alike(settings, stack):
+                for index, result in _of_length(runs, stack, length, found, limits):
                     results[index] = result
     except FOREIGN_FAILURES:  # also of a user's controller, whose reason the run alone gives
         if len(runs) == 1:
@@ -108,11 +109,21 @@ def _results(runs: Sequence[Run], limits: Limits) -> list[ScoredRun | None]:
     return results
 
 
+def _alike(settings: Sequence[RunSettings], stack: Stack) -> Iterator[tuple[int, np.ndarray]]:
+    """Yield the last step and the indices of runs that are judged alike, without unsure ones."""
+    groups: dict[tuple[Any, ...], list[int]] = defaultdict(list)
+    for index in np.flatnonzero(~stack.unsure).tolist():
+        scenario = settings[index].scenario
+        key = int(stack.last[index]), scenario.steps, scenario.score_window_s
+        groups[key].append(index)
+    for (length, *_), group in groups.items():
+        yield length, np.array(group)
+
+
 def _of_length(
-    runs: Sequence[Run], stack: Stack, length: int, limits: Limits
+    runs: Sequence[Run], stack: Stack, length: int, found: np.ndarray, limits: Limits
 ) -> Iterator[tuple[int, ScoredRun]]:
-    """Yield the index and the result of the runs that end with a step and are repeatable."""
-    found = np.flatnonzero(~stack.unsure & (stack.last == length))
+    """Yield index and result of those of some runs that are repeatable; they end with a step."""
     whole = len(found) == len(runs)
     part = until(stack.trajectory if whole else part_of_stack(stack.trajectory, found), length)
     counts = _usable(part) & _repeatable([runs[index] for index in found.tolist()], part)

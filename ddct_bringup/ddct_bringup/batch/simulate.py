@@ -30,7 +30,7 @@ class Stack(NamedTuple):
     trajectory: Trajectory
     """Signals that scores need, with the R runs as their first axis; after `last` any values."""
     last: np.ndarray
-    """Last step of each run, (R,); before N where its engine ended it."""
+    """Last step of each run, (R,); before its N where its engine ended it."""
     unsure: np.ndarray
     """Runs that must be computed step by step, (R,)."""
     fed: np.ndarray
@@ -58,24 +58,31 @@ def simulate_batch(
     """
     Return the signals of `run_headless` that scores need, of many runs with their controllers.
 
-    All runs are of one `loop_kind`. The feedback torques are multiplied by `feedback_factor`.
+    All runs are of one `loop_kind`; the record ends with the longest. The feedback torques are
+    multiplied by `feedback_factor`.
     """
     feedback = MixedControllers(controllers, [run.known for run in runs])
-    loops = _Loops(runs, feedback, feedback_factor)
-    steps, plants = runs[0].scenario.steps, loops.plants
+    ends = np.array([run.scenario.steps for run in runs])
+    steps = int(ends.max())
+    loops = _Loops(runs, feedback, steps, feedback_factor)
+    plants = loops.plants
     recorder = Recorder(steps, len(runs), sticking=runs[0].stick_slip, shift=runs[0].shift)
-    running, last = np.ones(len(runs), dtype=bool), np.full(len(runs), steps)
+    running, unsure = np.ones(len(runs), dtype=bool), np.zeros(len(runs), dtype=bool)
+    last = ends.copy()
     for step in range(steps + 1):
         tick = plants.tick(step)
         reply = loops.reply(tick, running)
         recorder.record(step, reply.signals, plants.phase_events)
+        over = running & (step == ends)
         if step:
-            over = running & plants.over(tick)
-            last[over], running = step, running & ~over
-        if not running.any():
-            break
+            over |= running & plants.over(tick)
+        if over.any():
+            last[over], unsure[over] = step, plants.unsure[over]
+            running = running & ~over
+            if not running.any():
+                break
         plants.advance(reply, running)
-    return Stack(recorder.trajectory(), last, plants.unsure, loops.fed)
+    return Stack(recorder.trajectory(), last, unsure, loops.fed)
 
 
 class _Loops:
@@ -85,9 +92,10 @@ class _Loops:
         self,
         runs: Sequence[RunSettings],
         feedback: MixedControllers,
+        steps: int,
         feedback_factor: float,
     ) -> None:
-        known, steps = [run.known for run in runs], runs[0].scenario.steps
+        known = [run.known for run in runs]
         self.plants = Plants(runs, steps)
         self._architectures = Architectures(known, feedback, steps, feedback_factor)
         self._handovers = make_handovers(known) if runs[0].shift else None

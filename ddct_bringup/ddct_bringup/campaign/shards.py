@@ -78,7 +78,8 @@ class CampaignRun(NamedTuple):
 
     campaign: int
     """Place of its campaign."""
-    index: int
+    run: int
+    """Index of the run in it."""
 
 
 @dataclass(frozen=True)
@@ -122,14 +123,14 @@ class CampaignWork(Work[CampaignRun, list[pa.Table]]):
         """Return a DdctError that names the first run of the block."""
         what = str(error) if isinstance(error, DdctError) else f'{type(error).__name__}: {error}'
         return DdctError(
-            f'run {items[0].index} or one of its shard could not be computed ({what}); what is '
+            f'run {items[0].run} or one of its shard could not be computed ({what}); what is '
             'done stays: go on with --resume'
         )
 
     def _runs(self, items: Sequence[CampaignRun]) -> list[list[PlannedRow | ImpossibleRow]]:
         """Return the runs of some items, campaign by campaign."""
         return [
-            [*campaign.planned_at([each.index for each in items if each.campaign == place])]
+            [*campaign.planned_at([each.run for each in items if each.campaign == place])]
             for place, campaign in enumerate(self._prepared())
         ]
 

@@ -61,10 +61,11 @@ def engine(random):
 
 
 def short_run(seed):
-    """Return a short launch with random delay, friction, road, sensors and limits."""
+    """Return a short launch: random delay, friction, road, sensors and limits, several lengths."""
     random = np.random.default_rng(seed)
     changes = {
-        **{'duration_s': 1.2, 'control_start_s': 0.2, 'score_window_s': [0.2, 1.1]},
+        'duration_s': (12 + seed % 3) / 10,
+        **{'control_start_s': 0.2, 'score_window_s': [0.2, 1.1]},
         'vehicle.mass_kg': 1500.0 if seed % 2 else some(random, 1000.0, 2000.0),
         'actuator.delay_s': int(random.integers(0, 35)) / 1000,
         **{**friction(random), **road(random), **sensors(random), **engine(random)},

@@ -29,7 +29,7 @@ class OneByOne:
 
         def submit(items: Sequence[CampaignRun]) -> Future[Any]:
             future: Future[Any] = Future()
-            first = items[0].index
+            first = items[0].run
             self.computed.append(first)
             if error := self._breaks(first):
                 future.set_exception(error)

@@ -49,7 +49,7 @@ def plant_kind(settings: RunSettings) -> Hashable:
     scenario = settings.scenario
     limited, sensed = scenario.engine_limits is not None, scenario.sensors is not None
     changes = tuple(engagement_steps(scenario.shift)[1]) if scenario.shift else None
-    return scenario.steps, settings.stick_slip, limited, sensed, changes
+    return settings.stick_slip, limited, sensed, changes
 
 
 class Plants:

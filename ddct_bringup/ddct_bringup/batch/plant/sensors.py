@@ -89,11 +89,13 @@ class _Sensors:
         streams = [(run.case.seed, quantity) for quantity in quantities for run in runs]
         self._gain = np.array([each.gain for each in options])
         noise, self._quantum, self._bias = np.array([each.errors for each in options]).T
+        ends = [run.scenario.steps for _ in quantities for run in runs]
         self._noise = _drawn(
             [
                 gaussian(*stream) if sigma else None
                 for stream, sigma in zip(streams, noise, strict=True)
             ],
+            ends,
             steps,
         )
         if self._noise is not None:
@@ -103,6 +105,7 @@ class _Sensors:
                 losses(*stream, each) if each.dropout else None
                 for stream, each in zip(streams, options, strict=True)
             ],
+            ends,
             steps,
         )
         self._delay = np.array([each.delay_steps for each in options])
@@ -138,13 +141,22 @@ class _Sensors:
         return np.where(quantised, value - rest, value)
 
 
-def _drawn(streams: Sequence[Iterator[float] | None], steps: int) -> np.ndarray | None:
-    """Return the first values of each stream, (N + 1, R), zero without one; None without any."""
+def _drawn(
+    streams: Sequence[Iterator[float] | None], ends: Sequence[int], steps: int
+) -> np.ndarray | None:
+    """
+    Return the values of each stream up to the last step of its run, (N + 1, R), then zero.
+
+    A run without a stream has zeros; it is None without any.
+    """
     if not any(streams):
         return None
-    count = steps + 1
-    rows = [[0.0] * count if each is None else list(islice(each, count)) for each in streams]
-    return np.array(rows, dtype=float).T.copy()
+    values = np.zeros((steps + 1, len(streams)))
+    for place, (each, end) in enumerate(zip(streams, ends, strict=True)):
+        if each is not None:
+            count = min(end, steps) + 1
+            values[:count, place] = list(islice(each, count))
+    return values
 
 
 class _Teeth:
