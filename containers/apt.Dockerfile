@@ -7,7 +7,7 @@ SHELL ["/bin/bash", "-c"]
 # variable lets both put packages beside those of apt.
 ENV PIP_BREAK_SYSTEM_PACKAGES=1
 RUN apt-get update && apt-get install -y --no-install-recommends python3-pip \
-    && pip install daqp mcap osqp pyarrow rosbags threadpoolctl \
+    && pip install cloudpickle daqp mcap osqp portalocker pyarrow rosbags threadpoolctl \
     && rm -rf /var/lib/apt/lists/*
 WORKDIR /ddct
 COPY . .

@@ -34,9 +34,11 @@ setup(
     ],
     install_requires=[
         'setuptools',
+        'cloudpickle',
         'mcap',
         'numpy',
         'pandas',
+        'portalocker[win32]',
         'pyyaml',
         'rich',
         'rosbags',

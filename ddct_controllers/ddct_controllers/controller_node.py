@@ -20,7 +20,7 @@ from ddct_plant.graph.node_reports import controller_info, timing_pairs
 from ddct_plant.graph.output import Output
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
-from ddct_plant.program.own_process import end_at_exit
+from ddct_plant.program.operating_system import end_at_exit
 from ddct_plant.shift.balance import WHOLE
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (

@@ -54,7 +54,7 @@ def test_the_end_of_its_process_in_a_run_is_one_line_with_its_name(
     with refused(DdctError, 'fmu.file', place=PLACE) as raised:
         run_headless(SETTINGS, faulty(version, fault))
     assert f'pi.fmu: {ENDS[fault]} when update was called at step 70: mend' in str(raised.value)
-    assert unpacked() == []
+    assert unpacked() == set()
 
 
 def test_the_end_of_its_process_at_the_start_is_one_line_with_its_name(
@@ -64,7 +64,7 @@ def test_the_end_of_its_process_at_the_start_is_one_line_with_its_name(
     with refused(DdctError, 'fmu.file', place=PLACE) as raised:
         run_headless(SETTINGS, controller_file(2))
     assert f'pi.fmu: {ENDS[CRASH]} when it was loaded: mend it' in str(raised.value)
-    assert unpacked() == []
+    assert unpacked() == set()
 
 
 def test_a_crash_while_it_is_freed_comes_after_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -106,4 +106,4 @@ def test_a_killed_program_leaves_no_process_and_the_next_run_removes_its_folder(
     run_headless(SETTINGS, controller_file(2))
     assert len(unpacked()) == 1, 'a folder in use is gone'
     del kept
-    assert unpacked() == []
+    assert unpacked() == set()

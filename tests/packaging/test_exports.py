@@ -23,9 +23,10 @@ WITHIN = {
         *(f'json_records.{name}' for name in ('choices_of', 'fields_of', 'is_record', 'keys_of')),
     ),
     'program': (
-        'signals.interruptible',
-        'signals.is_first_report',
-        'signals.stems_from_interrupt',
+        *(f'operating_system.{name}' for name in ('c_library', 'end_with', 'flush_c_output')),
+        'operating_system.open_files_stay',
+        *(f'operating_system.{name}' for name in ('processor_features', 'processor_name')),
+        *('signals.interruptible', 'signals.is_first_report', 'signals.stems_from_interrupt'),
     ),
 }
 """By room the names that its modules share, and no other room reads."""

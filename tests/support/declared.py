@@ -29,8 +29,12 @@ def setup_of(package: str) -> dict[str, Any]:
 
 
 def declared_to_pip(package: str) -> tuple[set[str], set[str]]:
-    """Return what a package's setup.py requires, and what it has as extras for its users."""
+    """
+    Return what a package's setup.py requires, and what it has as extras for its users.
+
+    Extras of what it requires are left out: `portalocker[win32]` is portalocker.
+    """
     given = setup_of(package)
     extras = given['extras_require'].items()
-    required = set(given['install_requires']) - {'setuptools'}
+    required = {name.partition('[')[0] for name in given['install_requires']} - {'setuptools'}
     return required, {name for key, names in extras if key != 'test' for name in names}

@@ -182,9 +182,9 @@ def faulty(version: int, fault: int) -> str:
     return controller_file(version, ('pid.Kp', f'fault: {fault}, fault_time: 0.1, pid.Kp'))
 
 
-def unpacked() -> list[str]:
-    """Return the names of the temporary files and folders of FMUs."""
-    return [each.name for each in Path('tmp').iterdir() if each.name.startswith('ddct_fmu')]
+def unpacked() -> set[str]:
+    """Return the names of the temporary folders of FMUs; a lock file left counts as its folder."""
+    return {each.name.removesuffix('.lock') for each in Path('tmp').glob('ddct_fmu*')}
 
 
 if __name__ == '__main__':

@@ -1,10 +1,11 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-Workers of this machine: processes forked from this one, or this process itself.
+Workers of this machine: other processes, or this process itself.
 
-A process has all that the program has imported and built, so it starts at once, and the work may
-refer to any object. It uses one thread for numerics.
+On Linux they are forks: each has all that the program has imported and built, so it starts at
+once, and the work may refer to any object. Elsewhere they are new and the work is pickled for
+them. Each uses one thread for numerics.
 """
 
 import faulthandler
@@ -20,6 +21,13 @@ from typing import Any, NamedTuple
 from ddct_bringup.many_runs.work import Work
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.program.arithmetic import limit_threads
+from ddct_plant.program.operating_system import (
+    KILLED,
+    Sent,
+    core_count,
+    main_left_out,
+    process_context,
+)
 from ddct_plant.program.signals import deferred_signals, obey_parent
 
 Submit = Callable[[Sequence[Any]], 'Future[Any]']
@@ -53,15 +61,16 @@ class LocalWorkers:
         """Return the function that hands over blocks; processes last until other work or close."""
         if self._pool is None or self._work is not work:
             self.close()
-            context = multiprocessing.get_context('fork')
             self._not_ours = {*multiprocessing.active_children()}
-            self._pool = ProcessPoolExecutor(self.count, context, _begin, (os.getpid(), work))
+            given = os.getpid(), Sent(work)
+            self._pool = ProcessPoolExecutor(self.count, process_context(), _begin, given)
             self._work = work
         return self._submit
 
     def _submit(self, items: Sequence[Any]) -> 'Future[Any]':
         assert self._pool is not None
-        future = self._pool.submit(_of_block, items)
+        with main_left_out():
+            future = self._pool.submit(_of_block, Sent(items))
         self._processes |= {*multiprocessing.active_children()} - self._not_ours
         return future
 
@@ -79,11 +88,13 @@ class LocalWorkers:
         codes = [each.exitcode for each in processes if each.exitcode is not None]
         # Python ends the others by SIGTERM when one has ended.
         own = [code for code in codes if code != -signal.SIGTERM] or codes
-        code = own[0] if own else -signal.SIGKILL
+        if not own:
+            return Ended('its process was killed', by_itself=False)
+        code = own[0]
         if code >= 0:
             return Ended(f'its process ended with exit code {code}', by_itself=True)
         name = signal.Signals(-code).name
-        if code in (-signal.SIGKILL, -signal.SIGTERM):
+        if -code in KILLED:
             return Ended(f'its process was killed ({name})', by_itself=False)
         return Ended(f'its process crashed ({name})', by_itself=True)
 
@@ -154,7 +165,7 @@ def worker_count(count: int | None) -> int:
     """Return a number of workers, by default that of the cores; ParameterError for less than 1."""
     if count is not None and count < 1:
         raise ParameterError(f'workers is {count}: give 1 or more')
-    return count or len(os.sched_getaffinity(0))
+    return count or core_count()
 
 
 def is_worker() -> bool:
@@ -163,13 +174,13 @@ def is_worker() -> bool:
 
 
 _work: Work[Any, Any] | None = None
-"""Work of a forked worker."""
+"""Work of a worker, in its process."""
 
 
-def _begin(parent: int, work: Work[Any, Any]) -> None:
+def _begin(parent: int, work: Sent) -> None:
     """Prepare a worker of the program `parent`."""
     global _work
-    _work = work
+    _work = work.value
     obey_parent(parent)
     faulthandler.disable()  # a crash becomes the reason of an item, in one line
     # Collecting what the program has imported would take as long as many runs, and copy it.
@@ -177,7 +188,7 @@ def _begin(parent: int, work: Work[Any, Any]) -> None:
     limit_threads(1)
 
 
-def _of_block(items: Sequence[Any]) -> Any:
-    """Return the result of a block of the worker's work, which is there since the fork."""
+def _of_block(items: Sent) -> Any:
+    """Return the result of a block of the worker's work."""
     assert _work is not None
-    return _work.of_block(items)
+    return _work.of_block(items.value)

@@ -51,6 +51,7 @@ def _ddct(argv: list[str]) -> int:
         name = parser.parse_args(argv[:1]).program
         parser.error(f'unknown program {name}: {close_name(name, sorted(known))}')
     if _starts_nodes(argv):
+        require_ros()
         # Imported here: what is imported before `run_program` cannot be interrupted without a
         # traceback.
         processes.start_server()

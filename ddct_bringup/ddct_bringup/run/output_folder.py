@@ -3,7 +3,6 @@
 """Output folders: locked by one program, complete or absent, never over files of others."""
 
 import errno
-import fcntl
 import os
 import shutil
 import stat
@@ -14,6 +13,8 @@ from pathlib import Path
 from typing import Self
 
 from ddct_plant.base.errors import DdctError
+from ddct_plant.program.lock_file import LockFile
+from ddct_plant.program.operating_system import is_running
 
 MARKER = '.ddct-output'
 """Name of the file that marks a folder of these programs, which `--overwrite` may replace."""
@@ -174,7 +175,7 @@ def _final(folder: Path) -> Path:
 def _lock(folder: Path, shared: bool) -> Iterator[None]:
     file = folder.parent / f'.{folder.name}{SUFFIX}'
     try:
-        descriptor = _open_locked(file, shared)
+        lock = LockFile(file, shared=shared)
     except BlockingIOError:
         raise DdctError(
             f'{_owner(file)} is writing there: wait for its end or give another folder',
@@ -185,41 +186,15 @@ def _lock(folder: Path, shared: bool) -> Iterator[None]:
             raise DdctError(f'{folder}: cannot be written ({error.strerror})') from error
         yield  # no other program can create or replace the folder either
         return
-    try:
+    with lock:
         yield
-    finally:
-        with suppress(OSError):
-            # The last process with a shared lock removes the file.
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            file.unlink()
-        os.close(descriptor)
-
-
-def _open_locked(file: Path, shared: bool) -> int:
-    """Open and lock a lock file; return its descriptor; BlockingIOError when another has it."""
-    file.parent.mkdir(parents=True, exist_ok=True)
-    kind = fcntl.LOCK_SH if shared else fcntl.LOCK_EX
-    while True:
-        descriptor = os.open(file, os.O_RDWR | os.O_CREAT | os.O_APPEND | os.O_NOFOLLOW, 0o666)
-        try:
-            fcntl.flock(descriptor, kind | fcntl.LOCK_NB)
-            if os.path.samestat(os.fstat(descriptor), file.stat()):
-                with suppress(OSError):  # a full disk; the process id is only for the message
-                    os.write(descriptor, f'{os.getpid()}\n'.encode())
-                return descriptor
-        except FileNotFoundError:
-            pass  # removed by its owner between the two steps above
-        except OSError:
-            os.close(descriptor)
-            raise
-        os.close(descriptor)
 
 
 def _owner(file: Path) -> str:
     """Return the text "process ID" of the living processes whose ids are in the lock file."""
-    with suppress(OSError, ValueError):
-        numbers = dict.fromkeys(int(line) for line in file.read_text().split())
-        alive = [str(number) for number in numbers if Path('/proc', str(number)).exists()]
+    with suppress(OSError, ValueError):  # Windows lets nobody else read a locked file
+        numbers = dict.fromkeys(int(line) for line in file.read_text(encoding='ascii').split())
+        alive = [str(number) for number in numbers if is_running(number)]
         if alive:
             return f'process {" and ".join(alive)}'
     return 'another process'

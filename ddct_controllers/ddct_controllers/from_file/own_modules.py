@@ -25,6 +25,7 @@ from typing import Any
 
 from ddct_controllers.from_file.controller_file import text_digest
 from ddct_plant.files.input_file import located, user_text
+from ddct_plant.program.operating_system import carry
 
 _SUFFIX, _INIT = '.py', '__init__.py'
 
@@ -100,9 +101,7 @@ def load_module(sources: Sources, *, anew: bool = False) -> ModuleType:
     then no module of it stays.
     """
     name = module_name(sources)
-    _FINDER.sources[name] = sources
-    if _FINDER not in sys.meta_path:
-        sys.meta_path.append(_FINDER)
+    _find_too({name: sources})
     if anew:
         _forget(name)
     try:
@@ -169,6 +168,16 @@ class _Finder(MetaPathFinder, Loader):
 
 
 _FINDER = _Finder()
+
+
+def _find_too(modules: Mapping[str, Sources]) -> None:
+    """Let `import` find the modules of files, by the names of the files' modules."""
+    _FINDER.sources.update(modules)
+    if _FINDER not in sys.meta_path:
+        sys.meta_path.append(_FINDER)
+
+
+carry(lambda: _FINDER.sources, _find_too)
 
 
 def _comes_first(name: str) -> bool:

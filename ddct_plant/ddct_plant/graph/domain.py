@@ -5,11 +5,13 @@
 import importlib.util
 import os
 import socket
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from hashlib import sha256
 
 from ddct_plant.base.errors import DdctError
+from ddct_plant.program.operating_system import is_linux
 
 SECURITY, STRATEGY = 'ROS_SECURITY_ENABLE', 'ROS_SECURITY_STRATEGY'
 """Environment variables: `true` asks for DDS security, without which `Enforce` starts no node."""
@@ -26,10 +28,15 @@ so the last domain is not used again at once."""
 
 def require_ros() -> None:
     """
-    Raise DdctError where ROS is not installed, or might run without the requested security.
+    Raise DdctError where ROS is not installed or does not run, or might lack requested security.
 
     Headless runs and scores do not need it.
     """
+    if not is_linux():
+        raise DdctError(
+            f'the graph and its nodes run on Linux alone, and this is {sys.platform}: run '
+            'headless, as with --headless'
+        )
     if importlib.util.find_spec('rclpy') is None:
         raise DdctError(
             'the graph and its nodes need ROS 2, and its package rclpy is not installed: run '

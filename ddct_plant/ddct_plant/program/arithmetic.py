@@ -18,6 +18,8 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
+from ddct_plant.program.operating_system import c_library, processor_features, processor_name
+
 _KERNEL = 'OPENBLAS_CORETYPE'
 """Environment variable with the name of OpenBLAS's kernel."""
 _THREADS = 'OPENBLAS_NUM_THREADS'
@@ -26,7 +28,6 @@ _HASWELL = 'Haswell'
 """Kernel for all processors of x86-64 with AVX2, of Intel since 2013 and of AMD since 2017."""
 _NEEDED = {'avx2', 'fma'}
 """Features of a processor that this kernel uses, by their names in Linux."""
-_PROCESSOR = Path('/proc/cpuinfo')
 
 _PACKAGES = (
     *('numpy', 'scipy', 'control', 'daqp', 'osqp', 'slycot', 'optuna'),
@@ -58,9 +59,7 @@ def choose_kernel() -> None:
 
 def _kernel_of_processor() -> str | None:
     """Return the kernel that every process of this machine uses; None where OpenBLAS picks it."""
-    if os.uname().machine != 'x86_64':
-        return None
-    return _HASWELL if {*_processor_line('flags').split()} >= _NEEDED else None
+    return _HASWELL if processor_features() >= _NEEDED else None
 
 
 def _kernel_of_numpy() -> str | None:
@@ -150,10 +149,10 @@ def arithmetic() -> Arithmetic:
         blas=_joined({each.user: each.name for each in found}),
         kernel=_joined({each.user: each.kernel for each in found}),
         threads=_joined({each.user: str(each.threads) for each in found}),
-        libc=' '.join(platform.libc_ver()),
+        libc=c_library(),
         versions={'python': platform.python_version(), **_versions()},
         machine=platform.machine(),
-        processor=_processor_line('model name') or platform.machine(),
+        processor=processor_name(),
     )
 
 
@@ -195,10 +194,3 @@ def _versions() -> Mapping[str, str]:
         except PackageNotFoundError:
             continue
     return found
-
-
-def _processor_line(name: str) -> str:
-    """Return what Linux says of the first processor under that name, '' for nothing."""
-    with _PROCESSOR.open(encoding='utf-8', errors='replace') as lines:
-        values = (line.partition(':')[2] for line in lines if line.startswith(name))
-        return next(values, '').strip()

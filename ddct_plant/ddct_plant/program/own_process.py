@@ -1,27 +1,32 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-Work in a process of its own, forked from this one: compiled code of a third party runs in it.
+Work in a process of its own, on Linux a fork of this one: code of a third party runs in it.
 
 Such code may crash, loop without end, or end its process, and its static variables start afresh in
 each process. The result comes back whole or not at all.
 """
 
-import ctypes
 import faulthandler
 import gc
 import itertools
-import mmap
 import os
 import pickle
-import select
 import signal
 import struct
 from collections.abc import Callable
 from contextlib import suppress
-from typing import NoReturn, TypeVar
+from multiprocessing import connection
+from typing import Any, NoReturn, TypeVar
 
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
+from ddct_plant.program.operating_system import (
+    Sent,
+    end_at_exit,
+    flush_c_output,
+    main_left_out,
+    process_context,
+)
 from ddct_plant.program.signals import obey_parent
 
 _MOST_SECONDS = 10.0
@@ -33,10 +38,8 @@ _CALL = struct.Struct('q16sq')
 """Struct of the last call of foreign code: its number, its name, and the step or -1."""
 NOTE_BYTES = _CALL.size
 """Size of a note of calls, bytes."""
-_DONE = NOTE_BYTES
-"""Offset of the byte that is 1 once the result is complete."""
 _numbers = itertools.count(1)
-_note: mmap.mmap | None = None
+_note: Any = None
 """Memory with the last call of foreign code, which another process has too; None without one."""
 _own = False
 """Whether this is a process that `in_own_process` has made."""
@@ -49,8 +52,8 @@ class ProcessEndedError(DdctError):
     """The process ended without a result: the text says how, and in which call."""
 
 
-def note_calls(memory: mmap.mmap) -> None:
-    """Note each call of foreign code in `memory`, of `NOTE_BYTES` or more, from now on."""
+def note_calls(memory: Any) -> None:
+    """Note each call of foreign code in a writable buffer of `NOTE_BYTES` from now on."""
     global _note
     _note = memory
 
@@ -74,77 +77,61 @@ def keep(resource: object, end: Callable[[], object]) -> None:
         _kept.append((resource, end))
 
 
-def end_at_exit() -> None:
-    """
-    Let exit() in C end this process at once, with what C has printed and its exit code.
-
-    Else the libraries of the program clean up: they may wait for threads that a fork does not
-    have, or crash beside those that still run.
-    """
-    libc = ctypes.CDLL(None)
-    # The handlers run in the reverse order.
-    libc.on_exit(libc._exit, None)
-    libc.__cxa_atexit(libc.fflush, None, None)
-
-
 def in_own_process(work: Callable[[], Result]) -> Result:
     """
-    Return `work()`, computed in a fork of this process; what it prints goes to standard error.
+    Return `work()`, computed by another process; what it prints goes to standard error.
 
     Raise the exception of `work`, or ProcessEndedError when the process crashes, ends itself, or
     makes no call within `_MOST_SECONDS` after the last one. Result and exception are pickled.
     """
     if _own:
         return work()  # this is such a process
-    result = os.memfd_create('result')
-    try:
-        with mmap.mmap(-1, _DONE + 1) as shared:
-            ctypes.CDLL(None).fflush(None)  # what C has printed here, a fork would print again
-            parent = os.getpid()
-            process = os.fork()
-            if not process:
-                _compute(work, shared, result, parent)
-            code = _wait(process, shared)
-            if not shared[_DONE]:
-                raise ProcessEndedError(_reason(code, shared))
-        with os.fdopen(os.dup(result), 'rb') as file:
-            file.seek(0)
-            done, value = pickle.load(file)
-    finally:
-        os.close(result)
+    context = process_context()
+    shared = context.RawArray('c', NOTE_BYTES)
+    reader, writer = context.Pipe(duplex=False)
+    process = context.Process(target=_compute, args=(Sent(work), writer, shared, os.getpid()))
+    flush_c_output()  # what C has printed here, a fork would print again
+    with reader:
+        with writer, main_left_out():
+            process.start()
+        try:
+            pickled, in_time = _wait(process, reader, shared)
+        finally:  # such as Ctrl-C
+            process.kill()
+            process.join()
+    if pickled is None:
+        raise ProcessEndedError(_reason(process.exitcode if in_time else None, shared[:]))
+    done, value = pickle.loads(pickled)
     if not done:
         raise value
     return value
 
 
-def _wait(process: int, shared: mmap.mmap) -> int | None:
-    """Return the exit code of the process when it has ended; None if it was killed as too slow."""
-    descriptor = os.pidfd_open(process)
-    poller = select.poll()
-    poller.register(descriptor, select.POLLIN)
+def _wait(process: Any, reader: Any, shared: Any) -> tuple[bytes | None, bool]:
+    """
+    Wait until the process has ended, or has made no call for too long.
+
+    Return its outcome, None without a whole one, and whether it has ended.
+    """
+    waited, outcome = [reader, process.sentinel], None
     last, unchanged_s = b'', 0.0
-    try:
-        while not poller.poll(1e3 * _POLL_S):
+    while unchanged_s < _MOST_SECONDS:
+        # A process that it has started itself may keep the sentinel.
+        running = process.is_alive()
+        ready = connection.wait(waited, _POLL_S if running else 0.0)
+        if reader in ready:
+            waited.remove(reader)
+            with suppress(EOFError, OSError):
+                outcome = reader.recv_bytes()
+        elif ready or not running:
+            return outcome, True
+        else:
             unchanged_s = unchanged_s + _POLL_S if shared[:] == last else 0.0
             last = shared[:]
-            if unchanged_s >= _MOST_SECONDS:
-                _kill(process)
-                return None
-        return os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
-    except BaseException:  # such as Ctrl-C
-        with suppress(ChildProcessError):
-            _kill(process)
-        raise
-    finally:
-        os.close(descriptor)
+    return outcome, False
 
 
-def _kill(process: int) -> None:
-    os.kill(process, signal.SIGKILL)
-    os.waitpid(process, 0)
-
-
-def _reason(code: int | None, shared: mmap.mmap) -> str:
+def _reason(code: int | None, note: bytes) -> str:
     """Return how the process has ended, and in which call."""
     if code is None:
         how = f'it gave no answer within {_MOST_SECONDS:g} s'
@@ -153,11 +140,11 @@ def _reason(code: int | None, shared: mmap.mmap) -> str:
         how = f'it crashed ({names.get(-code, f"signal {-code}")})'
     else:
         how = f'it ended with exit code {code}'
-    return f'{how}{last_call(shared[:]) or " when it was loaded"}'
+    return f'{how}{last_call(note) or " when it was loaded"}'
 
 
-def _compute(work: Callable[[], object], shared: mmap.mmap, result: int, parent: int) -> NoReturn:
-    """Be the new process: write the result of `work`, or its exception, and end."""
+def _compute(work: Sent, writer: Any, shared: Any, parent: int) -> NoReturn:
+    """Be the new process: send the result of `work`, or its exception, and end."""
     global _own
     code = 1
     try:
@@ -170,15 +157,13 @@ def _compute(work: Callable[[], object], shared: mmap.mmap, result: int, parent:
         gc.freeze()  # collecting what the program has made would copy it
         _own = True
         note_calls(shared)
-        with os.fdopen(result, 'wb') as file:
-            file.write(_outcome(work))
-        shared[_DONE] = 1
+        writer.send_bytes(_outcome(work.value))
         for _, end in _kept:
             end()
         code = 0
     finally:
         # As at the end of a program in C: what it has printed is written.
-        ctypes.CDLL(None).fflush(None)
+        flush_c_output()
         os._exit(code)
 
 

@@ -18,7 +18,6 @@ The middleware gets no handlers: `init_ros` forbids them.
 """
 
 import atexit
-import ctypes
 import operator
 import os
 import signal
@@ -28,8 +27,9 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
+from ddct_plant.program.operating_system import end_with
+
 _CAUGHT = (signal.SIGINT, signal.SIGTERM)
-_SET_PARENT_DEATH_SIGNAL = 1
 _received: list[int] = []
 """Signals that were received since the outermost `interruptible` began."""
 _noting: list[list[int]] = []
@@ -183,17 +183,10 @@ def obey_interrupts() -> None:
 
 
 def obey_parent(parent: int) -> None:
-    """
-    Leave the signals of a terminal to the process `parent`, by its id, and end with it (Linux).
-
-    Where it has ended already, this process ends at once: the kernel sends no signal for an end
-    before this call.
-    """
+    """Leave the signals of a terminal to the process `parent`, by its id, and end with it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    ctypes.CDLL(None).prctl(_SET_PARENT_DEATH_SIGNAL, signal.SIGKILL)
-    if os.getppid() != parent:
-        os.kill(os.getpid(), signal.SIGKILL)
+    end_with(parent)
 
 
 @contextmanager

@@ -15,6 +15,7 @@ import pytest
 import threadpoolctl
 
 from ddct_plant.program import arithmetic as module
+from ddct_plant.program import operating_system
 from ddct_plant.program.arithmetic import (
     Arithmetic,
     arithmetic,
@@ -97,7 +98,7 @@ def test_the_kernel_is_chosen_by_the_features_of_the_processor(
 ):
     processor = tmp_path / 'cpuinfo'
     processor.write_text(f'processor\t: 0\nflags\t\t: {flags}\n\nprocessor\t: 1\n')
-    monkeypatch.setattr(module, '_PROCESSOR', processor)
+    monkeypatch.setattr(operating_system, '_PROCESSOR', processor)
     monkeypatch.setattr(os, 'uname', lambda: os.uname_result(('Linux', 'here', '6', '1', machine)))
     monkeypatch.delitem(sys.modules, 'numpy')
     monkeypatch.delenv(KERNEL, raising=False)

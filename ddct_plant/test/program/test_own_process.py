@@ -6,14 +6,15 @@ import copyreg
 import ctypes
 import faulthandler
 import os
-import select
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, closing, nullcontext
+from multiprocessing import connection
 from pathlib import Path
+from typing import Any
 
 import pytest
 from refusals import refused
@@ -24,6 +25,7 @@ from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.program import own_process
 from ddct_plant.program.own_process import ProcessEndedError, calling, in_own_process, keep
 
+WAIT = connection.wait
 FULLY_BUFFERED = 0
 """Mode of C's setvbuf in which what is printed stays in the buffer until that is full."""
 
@@ -146,20 +148,15 @@ def test_exit_in_c_prints_and_leaves_out_what_libraries_do_at_the_end() -> None:
 class Turns:
     """The caller and the work take turns, in place of the time between two looks at the work."""
 
-    def __init__(self, number: int, then_ms: float | None) -> None:
-        """Take a number of turns; then a look waits `then_ms` for the end, or until it comes."""
-        self._left, self._then_ms = number, then_ms
+    def __init__(self, number: int, then_s: float | None) -> None:
+        """Take a number of turns; then a look waits `then_s` for the end, or until it comes."""
+        self._left, self._then_s = number, then_s
         self._given, self._taken = os.pipe(), os.pipe()
-        self._poller = select.poll()
 
-    def register(self, process: int, events: int) -> None:
-        """Register the process as that of the library would."""
-        self._poller.register(process, events)
-
-    def poll(self, _: float) -> list[tuple[int, int]]:
+    def wait(self, waited: Sequence[Any], _: float) -> Sequence[object]:
         """Let the work take a turn and find that it goes on; afterwards look whether it does."""
         if not self._left:
-            return self._poller.poll(self._then_ms)
+            return WAIT(waited, self._then_s)
         self._left -= 1
         os.write(self._given[1], b' ')
         os.read(self._taken[0], 1)
@@ -182,9 +179,9 @@ def turns_of(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Turns]]:
     """Return a function that makes the turns of the caller and the next work."""
     with ExitStack() as made:
 
-        def make(number: int, *, then_ms: float | None) -> Turns:
-            turns = made.enter_context(closing(Turns(number, then_ms)))
-            monkeypatch.setattr(select, 'poll', lambda: turns)
+        def make(number: int, *, then_s: float | None) -> Turns:
+            turns = made.enter_context(closing(Turns(number, then_s)))
+            monkeypatch.setattr(connection, 'wait', turns.wait)
             return turns
 
         yield make
@@ -193,7 +190,7 @@ def turns_of(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Turns]]:
 def test_work_that_makes_no_call_for_long_is_ended_with_the_last_call(
     turns_of: Callable[..., Turns],
 ) -> None:
-    turns = turns_of(1, then_ms=0.0)
+    turns = turns_of(1, then_s=0.0)
 
     def work() -> None:
         turns.take(lambda: calling('update', 7))
@@ -208,7 +205,7 @@ def test_work_that_goes_on_calling_may_take_longer_than_the_limit(
     turns_of: Callable[..., Turns],
 ) -> None:
     number = round(2.0 * own_process._MOST_SECONDS / own_process._POLL_S)
-    turns = turns_of(number, then_ms=None)
+    turns = turns_of(number, then_s=None)
 
     def work() -> int:
         for _ in range(number):
@@ -298,12 +295,11 @@ def test_an_interruption_of_the_caller_ends_it(monkeypatch: pytest.MonkeyPatch) 
         forked.append(fork())
         return forked[-1]
 
-    class Interrupted:
-        register = staticmethod(lambda *_: None)
-        poll = staticmethod(lambda _: signal.raise_signal(signal.SIGINT))
+    def interrupted(*_: object) -> None:
+        signal.raise_signal(signal.SIGINT)
 
     monkeypatch.setattr(os, 'fork', noted)
-    monkeypatch.setattr(select, 'poll', Interrupted)
+    monkeypatch.setattr(connection, 'wait', interrupted)
     with pytest.raises(KeyboardInterrupt):
         in_own_process(lambda: time.sleep(2 * WITHIN_S))
     assert not Path(f'/proc/{forked[0]}').exists()

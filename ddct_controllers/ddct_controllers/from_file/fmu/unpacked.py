@@ -7,15 +7,17 @@ A process that crashes leaves its folder behind: whoever unpacks an FMU next, or
 the process, removes it.
 """
 
-import fcntl
-import os
 import shutil
 import tempfile
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from ddct_plant.program.lock_file import LockFile
+
 _PREFIX = 'ddct_fmu_'
+_LOCK = '.lock'
+"""Suffix of the name of the lock file beside a folder."""
 
 
 class UnpackedFmu:
@@ -25,8 +27,7 @@ class UnpackedFmu:
         """Unpack the FMU in a file."""
         remove_left_folders()
         self.path = Path(tempfile.mkdtemp(prefix=_PREFIX))
-        self._lock = os.open(self.path, os.O_RDONLY)
-        fcntl.flock(self._lock, fcntl.LOCK_SH)
+        self._lock = LockFile(_lock_of(self.path))
         try:
             fmpy.extract(path, self.path)
         except BaseException:
@@ -36,16 +37,17 @@ class UnpackedFmu:
     def remove(self) -> None:
         """Remove the folder."""
         shutil.rmtree(self.path, ignore_errors=True)
-        os.close(self._lock)
+        self._lock.release()
 
 
 def remove_left_folders() -> None:
     """Remove the folders of processes that have ended."""
-    for folder in Path(tempfile.gettempdir()).glob(f'{_PREFIX}*'):
-        with suppress(OSError):  # in use, or another user's
-            lock = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                shutil.rmtree(folder, ignore_errors=True)
-            finally:
-                os.close(lock)
+    place = Path(tempfile.gettempdir())
+    for name in {each.name.removesuffix(_LOCK) for each in place.glob(f'{_PREFIX}*')}:
+        folder = place / name
+        with suppress(OSError), LockFile(_lock_of(folder)):  # in use, or another user's
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+def _lock_of(folder: Path) -> Path:
+    return folder.with_name(f'{folder.name}{_LOCK}')

@@ -1,0 +1,81 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Lock files, which exist while a process works on what they stand for, by `portalocker`."""
+
+import errno
+import os
+from contextlib import suppress
+from pathlib import Path
+from typing import Self
+
+from ddct_plant.program.operating_system import open_files_stay
+
+
+class LockFile:
+    """
+    A file that this process has locked, alone or, as `shared`, with others.
+
+    The lock is the operating system's: it ends with the process, however that ends. The last one
+    that has it removes the file.
+    """
+
+    def __init__(self, path: Path, *, shared: bool = False) -> None:
+        """Lock a file; raise BlockingIOError where another has it, OSError without a place."""
+        self.path = path
+        self._descriptor: int | None = _locked(path, shared=shared)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.release()
+
+    def release(self) -> None:
+        """Give the lock back; nothing happens where it was given back."""
+        descriptor, self._descriptor = self._descriptor, None
+        if descriptor is None:
+            return
+        if open_files_stay():
+            os.close(descriptor)
+            with suppress(OSError):  # another process has opened it
+                self.path.unlink()
+            return
+        with suppress(OSError):  # another process has locked it too
+            _lock(descriptor, shared=False)
+            self.path.unlink()
+        os.close(descriptor)
+
+
+def _locked(path: Path, *, shared: bool) -> int:
+    """Open and lock a file; return its descriptor."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    while True:
+        descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666)
+        try:
+            _lock(descriptor, shared=shared)
+            if os.path.samestat(os.fstat(descriptor), path.stat()):
+                # A full disk, or Windows, where a locked file is not written to: the process id
+                # is only for the message.
+                with suppress(OSError):
+                    os.write(descriptor, f'{os.getpid()}\n'.encode())
+                return descriptor
+        except FileNotFoundError:
+            pass  # removed by its owner between the two steps above
+        except OSError:
+            os.close(descriptor)
+            raise
+        os.close(descriptor)
+
+
+def _lock(descriptor: int, *, shared: bool) -> None:
+    """Lock an open file now; raise BlockingIOError where another has it, or another OSError."""
+    import portalocker  # late: slower to import than a lock takes
+
+    kind = portalocker.LockFlags.SHARED if shared else portalocker.LockFlags.EXCLUSIVE
+    try:
+        portalocker.lock(descriptor, kind | portalocker.LockFlags.NON_BLOCKING)
+    except portalocker.AlreadyLocked as error:
+        raise BlockingIOError(errno.EAGAIN, 'locked by another') from error
+    except portalocker.LockException as error:
+        why = error.__cause__
+        raise (why if isinstance(why, OSError) else OSError(errno.ENOLCK, str(error))) from None
