@@ -5,8 +5,9 @@ A Sphinx extension: directives that make the tables of the pages when the site i
 
 `ddct-options`, `ddct-parameters` and so on, one for each kind of `tables.declared`, take the name
 of a table. `ddct-results FILE NAME` shows a table of a file that a program has written, and
-`ddct-schemas` the schemas of all such files. An unknown name is a warning of Sphinx with its page
-and line, as is a declared table that no page shows.
+`ddct-schemas` the schemas of all such files. `ddct-topics` has a line `TOPIC: content` for each
+topic, to which the declared type, publisher and frame are added. An unknown name is a warning of
+Sphinx with its page and line, as is a declared table that no page shows.
 """
 
 from pathlib import Path
@@ -17,6 +18,8 @@ from sphinx.util import logging
 from sphinx.util.docutils import SphinxDirective
 
 from ddct_plant.base.errors import DdctError
+from ddct_plant.program.table import TextTable
+from ddct_plant.signals.topics import TOPICS
 from website.results import result_table
 from website.schemas import schema_table
 from website.tables.declared import KINDS, tables_of
@@ -70,6 +73,24 @@ class _SchemaTable(_Table):
         return schema_table(self.folder / 'schemas')
 
 
+class _TopicTable(_Table):
+    has_content = True
+
+    def markdown(self) -> str:
+        contents = dict(line.split(': ', 1) for line in self.content if ': ' in line)
+        names = [topic.name for topic in TOPICS]
+        if list(contents) != names:
+            raise DdctError(f'give a line for each of these topics in this order: {names}')
+        rows = [
+            (
+                *(f'`{each.name}`', each.type.replace('/msg/', '/'), each.publisher),
+                *(each.frame or '-', contents[each.name]),
+            )
+            for each in TOPICS
+        ]
+        return as_markdown(TextTable('', ('topic', 'type', 'from', 'frame', 'content'), rows))
+
+
 def _shown(env: Any) -> set[tuple[str, str]]:
     if not hasattr(env, _SHOWN):
         setattr(env, _SHOWN, set())
@@ -90,5 +111,6 @@ def setup(app: Any) -> dict[str, bool]:
         app.add_directive(f'{_PREFIX}{kind}', _DeclaredTable)
     app.add_directive(f'{_PREFIX}results', _ResultTable)
     app.add_directive(f'{_PREFIX}schemas', _SchemaTable)
+    app.add_directive(f'{_PREFIX}topics', _TopicTable)
     app.connect('env-check-consistency', _warn_of_unshown)
     return {'parallel_read_safe': False}

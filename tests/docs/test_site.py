@@ -85,6 +85,7 @@ def test_the_site_is_whole(site: Path) -> None:
     assert '<table' in notebook and 'alt="Slip reference over time' in notebook
     assert len([*(site / '_downloads').rglob('*.schema.json')]) == len(DOCUMENTS)
     assert '<math ' in page(site, 'docs/develop/gear_shift')
+    assert 'TwistStamped</p></td>' in page(site, 'docs/develop/graph')
     for name, file, table in shown_results():
         assert f'{file} {table}<' in page(site, name)
     assert 'alt="Title of engagements_launch"' in ''.join(
