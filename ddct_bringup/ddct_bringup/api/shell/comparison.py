@@ -3,10 +3,11 @@
 """Run several plans into one folder, with scores, margins and the report beside their bags."""
 
 from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
-from ddct_bringup.api.shell.pages import REPORT_FILE, write_report
+from ddct_bringup.api.shell.pages import REPORT_FILE, draw_page, drawn_apart, write_report
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.manifest.manifest import finish_manifest
 from ddct_bringup.manifest.runs import begin_comparison
@@ -62,7 +63,14 @@ def compare_into(
     run goes into its folder. Raise NoValidRunError when no run is valid: `out` stays as it was.
     """
     unusable: list[DdctError] = []
-    with locked_folders(out), StagedFolder(out, overwrite=overwrite) as folder:
+    # A graph has the processor for itself.
+    headless = all(plan.layout == 'headless' for plan in plans)
+    drawing = drawn_apart() if headless else nullcontext(draw_page)
+    with (
+        locked_folders(out),
+        StagedFolder(out, overwrite=overwrite) as folder,
+        drawing as draw,
+    ):
         chosen = [plan.controller for plan in plans]
         named = {plan.name: plan for plan in plans}
         begin_comparison(folder.path, named, limits, floors=floors)
@@ -80,7 +88,7 @@ def compare_into(
             names = ', '.join(plan.name for plan in plans)
             raise NoValidRunError(f'no run is valid ({names}): {folder.left}')
         write_json(str(folder.path / FREQUENCY_FILE), evidence)
-        write_report(in_order(runs), str(folder.path / REPORT_FILE), limits)
+        write_report(in_order(runs), str(folder.path / REPORT_FILE), limits, draw)
         finish_manifest(folder.path)
         folder.commit()
     return scored, unusable

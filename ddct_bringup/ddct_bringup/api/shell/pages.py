@@ -4,8 +4,14 @@
 
 import importlib.util
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import BrokenExecutor
+from contextlib import closing, contextmanager
+from functools import partial
+from importlib import import_module
+from operator import call
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 
@@ -13,7 +19,9 @@ from ddct_bringup.api import shell
 from ddct_bringup.documents.page_parts import MARKER
 from ddct_bringup.logs.columns import load_columns
 from ddct_bringup.manifest.manifest import keep_digests
-from ddct_bringup.report.evidence import evidence_of
+from ddct_bringup.many_runs.local_workers import LocalWorkers
+from ddct_bringup.many_runs.work import Each
+from ddct_bringup.report.evidence import LoopEvidence, evidence_of
 from ddct_bringup.report.run_labels import in_order, require_one_scenario
 from ddct_bringup.run.output_folder import is_ours, locked_folders
 from ddct_bringup.scores.bags import bags_in
@@ -76,9 +84,48 @@ def _require_writable(out: str) -> None:
         raise DdctError(f'--out {out}: cannot be read ({error.strerror})') from error
 
 
-def write_report(runs: Sequence[ScoredRecording], out: str, limits: Limits) -> None:
+def draw_page(
+    runs: Sequence[ScoredRecording], evidence: Sequence[LoopEvidence], limits: Limits
+) -> str:
+    """Return the page of runs; what draws is imported here, which takes longer than a run."""
+    return shell.report_page(runs, evidence, limits)
+
+
+def _get_ready() -> str:
+    """Import what draws a page."""
+    import_module('bokeh.plotting')
+    return shell.report_page.__name__
+
+
+@contextmanager
+def drawn_apart() -> Iterator[Callable[..., str]]:
     """
-    Write the page of runs, in their order, judged by these limits.
+    Yield a function that does as `draw_page` in a process, which imports what draws meanwhile.
+
+    Where that process has ended, as for want of memory, it draws in this one.
+    """
+    with closing(LocalWorkers(1)) as process:
+        submit = process.begin(Each(call))
+        submit([_get_ready])
+
+        def draw(*content: Any) -> str:
+            try:
+                (page,) = submit([partial(draw_page, *content)]).result()
+            except BrokenExecutor:
+                return draw_page(*content)
+            return str(page)
+
+        yield draw
+
+
+def write_report(
+    runs: Sequence[ScoredRecording],
+    out: str,
+    limits: Limits,
+    draw: Callable[..., str] = draw_page,
+) -> None:
+    """
+    Write the page of runs, in their order, judged by these limits; `draw` is as `draw_page`.
 
     Call `require_chart_library` first. A bag that could not be read is on the page with its
     reason. Raise DdctError when none can be read, when they are of several scenarios, and when the
@@ -90,5 +137,4 @@ def write_report(runs: Sequence[ScoredRecording], out: str, limits: Limits) -> N
     require_one_scenario(runs)
     with Console(file=sys.stderr).status('frequency evidence'):
         evidence = evidence_of(runs)
-    # What draws is imported here at last: bokeh takes longer than a headless run.
-    write_text(out, shell.report_page(runs, evidence, limits))
+    write_text(out, draw(runs, evidence, limits))
