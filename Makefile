@@ -46,7 +46,8 @@ setup: $(WORKSPACE_BUILT) $(addprefix .venv/.,$(WANTED))
 # colcon's install/setup.* chain to local_setup.*, so that the ament index has the message packages.
 $(VENV_MADE): locks/workspace.txt locks/uv.txt
 	@if [ "$$(uname -sm)" != 'Linux x86_64' ]; then \
-	    echo "make: the ROS 2 wheels are for x86-64 Linux, this is $$(uname -sm)" >&2; exit 1; fi; \
+	    echo "make: the ROS 2 wheels are for x86-64 Linux, this is $$(uname -sm): see docs/use/setup.md" \
+	        'for ROS 2 from apt, and for headless runs by pip alone' >&2; exit 1; fi; \
 	for python in $(PYTHONS); do \
 	    "$$python" -c '$(SUITABLE)' 2>/dev/null && break; python=; \
 	done; \

@@ -26,7 +26,7 @@ from ddct_plant.graph.qos import (
     overriding_options,
     own_copy,
 )
-from ddct_plant.graph.rare_warnings import RareWarnings, find_sources
+from ddct_plant.graph.rare_warnings import RareWarnings
 from ddct_plant.graph.settings import (
     UndeclaredParameterError,
     as_declared,
@@ -84,8 +84,6 @@ class GraphNode(Node):
         self._true = None if self.KNOWN_ONLY else declare_case(self, self.known, self.DEFAULTS)
         self.add_pre_set_parameters_callback(self._as_declared)
         self._warnings = RareWarnings(self, self.steady_time.monotonic)
-        if not self.known.lockstep:
-            find_sources()
         self.limit: ReplyLimit | None = None
         """Limit of the stamps of replies in real time; None in lock-step and in the driveline."""
         self.refused = 0
