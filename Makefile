@@ -43,7 +43,8 @@ setup: $(WORKSPACE_BUILT) $(addprefix .venv/.,$(WANTED))
 
 # Always a new environment: each ROS wheel holds a second package record (rclpy in ros-rclpy), and
 # a second sync would take those for strangers and remove their modules.
-# colcon's install/setup.* chain to local_setup.*, so that the ament index has the message packages.
+# colcon's install/setup.* chain to local_setup.*: the ament index has the message packages, and
+# python3 is that of the environment.
 $(VENV_MADE): locks/workspace.txt locks/uv.txt
 	@if [ "$$(uname -sm)" != 'Linux x86_64' ]; then \
 	    echo "make: the ROS 2 wheels are for x86-64 Linux, this is $$(uname -sm): see docs/use/setup.md" \
@@ -63,7 +64,8 @@ $(VENV_MADE): locks/workspace.txt locks/uv.txt
 	    --build-constraints locks/workspace.txt locks/workspace.txt locks/uv.txt
 	@$(BIN)/python -c 'import $(NEEDED_AT_RUN)'
 	@for shell in sh bash zsh; do \
-	    echo 'export AMENT_PREFIX_PATH="$(CURDIR)/.venv$${AMENT_PREFIX_PATH:+:$$AMENT_PREFIX_PATH}"' \
+	    printf '%s\n' 'export AMENT_PREFIX_PATH="$(CURDIR)/.venv$${AMENT_PREFIX_PATH:+:$$AMENT_PREFIX_PATH}"' \
+	        'case ":$$PATH:" in *":$(CURDIR)/$(BIN):"*) ;; *) export PATH="$(CURDIR)/$(BIN):$$PATH" ;; esac' \
 	        > .venv/local_setup.$$shell; \
 	done
 	@touch $@
@@ -121,9 +123,9 @@ SOURCES := $(shell find ddct_*/ddct_* -name '*.py' -o -name '*.yaml' -o -name '*
 docs: setup .venv/.site $(RESULTS)/numbers.json $(RESULTS)/benchmark.json $(RESULTS)/studies.json
 	@$(SOURCED) PYTHONPATH="$(CURDIR)/docs:$$PYTHONPATH" $(BIN)/python -P -m website --results '$(RESULTS)'
 
-$(RESULTS)/numbers.json: COMMAND = reproduce numbers --json -
+$(RESULTS)/numbers.json: COMMAND = thesis numbers --json -
 $(RESULTS)/benchmark.json: COMMAND = benchmark --packaged --json -
-$(RESULTS)/studies.json: COMMAND = reproduce studies --json - --charts $(RESULTS)
+$(RESULTS)/studies.json: COMMAND = thesis studies --json - --charts $(RESULTS)
 $(RESULTS)/%.json: $(WORKSPACE_BUILT) $(SOURCES)
 	@mkdir -p $(RESULTS)
 	@$(SOURCED) ddct $(COMMAND) > $@

@@ -10,25 +10,33 @@ from setuptools import find_packages, setup
 
 PACKAGE = 'ddct_bringup'
 VERSION = ElementTree.parse('package.xml').findtext('version')
+OF_BOTH = [
+    'live = ddct_bringup.programs.live:main',
+    'score = ddct_bringup.programs.score:main',
+]
 PROGRAMS = [
+    *OF_BOTH,
     'benchmark = ddct_bringup.programs.benchmark:main',
-    'bringup = ddct_bringup.programs.bringup:main',
     'campaign = ddct_bringup.programs.campaign:main',
     'compare = ddct_bringup.programs.compare:main',
     'identify = ddct_bringup.identification.identify:main',
     'limit = ddct_bringup.programs.limit:main',
-    'live = ddct_bringup.programs.live:main',
-    'recorder = ddct_bringup.record.recorder_node:main',
-    'reproduce = ddct_bringup.programs.reproduce:main',
+    'node = ddct_bringup.programs.node:main',
     'report = ddct_bringup.programs.report:main',
-    'score = ddct_bringup.programs.score:main',
     'sweep = ddct_bringup.programs.sweep:main',
+    'thesis = ddct_bringup.programs.thesis:main',
     'tune = ddct_bringup.programs.tune:main',
     'verify = ddct_bringup.programs.verify:main',
 ]
+"""What `ddct` starts by its first word."""
 DDCT = 'ddct = ddct_bringup.programs.ddct:main'
-SCRIPTS = [f'{program.split()[0]} = ddct_plant.program.command_line:main' for program in PROGRAMS]
-"""The same programs as scripts, whose imports can be interrupted."""
+OF_ROS2_RUN = [
+    *OF_BOTH,
+    'bringup = ddct_bringup.programs.bringup:main',
+    'recorder = ddct_bringup.record.recorder_node:main',
+]
+SCRIPTS = [f'{each.split()[0]} = ddct_plant.program.command_line:main' for each in OF_ROS2_RUN]
+"""What `ros2 run` starts, as scripts whose imports can be interrupted."""
 WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)
 """
 Whether pip builds a wheel. A wheel puts scripts into bin/, so that `ddct` is its only one.
@@ -97,5 +105,6 @@ setup(
     entry_points={
         'console_scripts': [DDCT] if WHEEL else [DDCT, *SCRIPTS],
         'ddct.programs': PROGRAMS,
+        'ddct.scripts': OF_ROS2_RUN,
     },
 )

@@ -10,15 +10,16 @@ from setuptools import find_packages, setup
 
 PACKAGE = 'ddct_controllers'
 VERSION = ElementTree.parse('package.xml').findtext('version')
-PROGRAMS = [
-    'check-controller = ddct_controllers.check.program:main',
+NODES = [
     'controller = ddct_controllers.controller_node:main',
-    'design = ddct_controllers.workflows.design_program:main',
     'handover = ddct_controllers.handover.handover_node:main',
-    'new-controller = ddct_controllers.template.new_controller:main',
 ]
-SCRIPTS = [f'{program.split()[0]} = ddct_plant.program.command_line:main' for program in PROGRAMS]
-"""The same programs as scripts, whose imports can be interrupted."""
+PROGRAMS = [
+    'check = ddct_controllers.check.program:main',
+    'design = ddct_controllers.workflows.design_program:main',
+]
+SCRIPTS = [f'{node.split()[0]} = ddct_plant.program.command_line:main' for node in NODES]
+"""The nodes as scripts, whose imports can be interrupted."""
 WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)
 """Whether pip builds a wheel, which would put scripts into bin/ that `ros2 run` does not find."""
 
@@ -64,5 +65,9 @@ setup(
         'Typing :: Typed',
     ],
     python_requires='>=3.11',
-    entry_points={'console_scripts': [] if WHEEL else SCRIPTS, 'ddct.programs': PROGRAMS},
+    entry_points={
+        'console_scripts': [] if WHEEL else SCRIPTS,
+        'ddct.programs': PROGRAMS,
+        'ddct.scripts': NODES,
+    },
 )

@@ -10,15 +10,15 @@ from setuptools import find_packages, setup
 
 PACKAGE = 'ddct_plant'
 VERSION = ElementTree.parse('package.xml').findtext('version')
-PROGRAMS = [
+NODES = [
     'actuator = ddct_plant.nodes.actuator_node:main',
     'clutch = ddct_plant.nodes.clutch_node:main',
     'driveline = ddct_plant.nodes.driveline_node:main',
     'engine = ddct_plant.nodes.engine_node:main',
     'load = ddct_plant.nodes.load_node:main',
 ]
-SCRIPTS = [f'{program.split()[0]} = ddct_plant.program.command_line:main' for program in PROGRAMS]
-"""The same programs as scripts, whose imports can be interrupted."""
+SCRIPTS = [f'{node.split()[0]} = ddct_plant.program.command_line:main' for node in NODES]
+"""The nodes as scripts, whose imports can be interrupted."""
 WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)
 """Whether pip builds a wheel, which would put scripts into bin/ that `ros2 run` does not find."""
 
@@ -59,5 +59,5 @@ setup(
         'Typing :: Typed',
     ],
     python_requires='>=3.11',
-    entry_points={'console_scripts': [] if WHEEL else SCRIPTS, 'ddct.programs': PROGRAMS},
+    entry_points={'console_scripts': [] if WHEEL else SCRIPTS, 'ddct.scripts': NODES},
 )

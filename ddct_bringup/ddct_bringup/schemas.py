@@ -96,9 +96,9 @@ DOCUMENTS: Mapping[str, JsonDocument] = {
     'verify_several': JsonDocument('--json of verify, of several results', FoldersDocument),
     'identify': JsonDocument('--json of identify', IdentificationDocument),
     'identify_log': JsonDocument('--json of identify --from', LogFitDocument),
-    'check_controller': JsonDocument('--json of check-controller', CheckReport),
-    'numbers': JsonDocument('--json of reproduce numbers', NumbersDocument),
-    'studies': JsonDocument('--json of reproduce studies', Mapping[str, WrittenStudy]),
+    'check_controller': JsonDocument('--json of check', CheckReport),
+    'numbers': JsonDocument('--json of thesis numbers', NumbersDocument),
+    'studies': JsonDocument('--json of thesis studies', Mapping[str, WrittenStudy]),
     'benchmark_packaged': JsonDocument(
         '--json of benchmark --packaged', Mapping[str, WrittenTable]
     ),

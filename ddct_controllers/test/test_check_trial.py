@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Trials of check-controller: their measurements, times and scaled torques."""
+"""Trials of `ddct check`: their measurements, times and scaled torques."""
 
 from typing import Any
 

@@ -66,8 +66,8 @@ def test_bringup_ends_with_misses_lateness_and_safe_state(leave, tmp_path, capsy
     printed = capsys.readouterr()
     assert printed.out == f'{out / "pi"}\n'
     assert printed.err.splitlines()[-2:] == [
-        'ddct bringup: 0 of 60 steps missed, worst lateness 1.23 ms, safe state: none',
-        'ddct bringup: not_engaged: the slip, -2105.5 rpm at the end, is not within 50 rpm over '
+        'bringup: 0 of 60 steps missed, worst lateness 1.23 ms, safe state: none',
+        'bringup: not_engaged: the slip, -2105.5 rpm at the end, is not within 50 rpm over '
         'the last 0.3 s',
     ]
 
@@ -87,12 +87,12 @@ def test_bringup_fails_for_misses_and_for_a_safe_state_and_keeps_the_bag(
     assert bringup.main(['--mode', 'realtime', '--out', str(out)]) == 1
     log, summary, error = capsys.readouterr().err.splitlines()[-3:]
     partial = out / 'pi.partial'
-    assert log == f'ddct bringup: warnings are in {partial / "work" / "actuator.log"}'
+    assert log == f'bringup: warnings are in {partial / "work" / "actuator.log"}'
     state = '/actuator at 0.4 s' if safe else 'none'
     assert summary == (
-        f'ddct bringup: {missed} of 60 steps missed, worst lateness 1.23 ms, safe state: {state}'
+        f'bringup: {missed} of 60 steps missed, worst lateness 1.23 ms, safe state: {state}'
     )
-    assert error == f'ddct bringup: {partial}: not valid: {reason}'
+    assert error == f'bringup: {partial}: not valid: {reason}'
     assert not (out / 'pi').exists()
 
 
@@ -101,7 +101,7 @@ def test_bringup_names_the_logs_where_the_bag_is_in_the_end(leave, tmp_path, cap
     out = tmp_path / 'runs'
     assert bringup.main(['--mode', 'realtime', '--out', str(out)]) == 0
     log = out / 'pi' / 'work' / 'actuator.log'
-    assert f'ddct bringup: warnings are in {log}\n' in capsys.readouterr().err
+    assert f'bringup: warnings are in {log}\n' in capsys.readouterr().err
     assert log.is_file()
 
 

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""`check-controller` names beginners' errors, and passes controllers in order."""
+"""`ddct check` names beginners' errors, and passes controllers in order."""
 
 import inspect
 import json
@@ -20,7 +20,7 @@ from support.third_party import install
 from ddct_controllers.check import program
 from ddct_controllers.check.checks import CHECKS, FAIL, PASS, SKIPPED, Outcome, check_controller
 from ddct_controllers.interface import Controller
-from ddct_controllers.template.new_controller import install_command
+from ddct_controllers.template.package import install_command
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_controllers.workflows.evidence_types import linear_entries
 from ddct_plant.scenario.file import load_scenario
@@ -245,9 +245,7 @@ def test_the_program_fails_with_one_line_that_names_the_checks(
     report, errors = report_of(capfd, 1, 'WrongSign')
     states = {each['name']: each['state'] for each in report['checks']}
     assert (states['sign'], states['stability'], states['reset']) == (FAIL, FAIL, PASS)
-    assert_one_line(
-        errors.partition('\n')[2], 'ddct check-controller', 'WrongSign fails: sign, stability'
-    )
+    assert_one_line(errors.partition('\n')[2], 'ddct check', 'WrongSign fails: sign, stability')
 
 
 @pytest.mark.usefixtures('installed')

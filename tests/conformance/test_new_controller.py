@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""`new-controller` writes a package that installs, is found, runs and passes its own tests."""
+"""`ddct check --new` writes a package that installs, is found, runs and passes its own tests."""
 
 import importlib
 import sys
@@ -11,12 +11,13 @@ import pytest
 from support.complaints import assert_one_line
 from support.third_party import GROUP, install
 
-from ddct_controllers.template import new_controller
-from ddct_controllers.template.new_controller import install_command
+from ddct_controllers.check import program as check
+from ddct_controllers.template import package
+from ddct_controllers.template.package import install_command
 
 
 def write(folder: Path, name: str = 'my_slip') -> None:
-    assert new_controller.main([name, '--out', str(folder)]) == 0
+    assert check.main(['--new', name, '--out', str(folder)]) == 0
 
 
 def test_the_package_is_found_and_its_own_tests_pass(
@@ -47,7 +48,7 @@ def test_the_printed_command_uses_what_an_environment_without_uv_has(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, pip: bool, program: str
 ) -> None:
     monkeypatch.setattr(sys, 'prefix', str(tmp_path))
-    monkeypatch.setattr(new_controller, 'find_spec', lambda name: object() if pip else None)
+    monkeypatch.setattr(package, 'find_spec', lambda name: object() if pip else None)
     command = install_command('DIR')
     assert command.startswith(program)
     assert command.endswith(' --no-build-isolation -e DIR')
@@ -57,10 +58,10 @@ def test_the_printed_next_steps_are_those_of_the_readme(
     capfd: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     write(tmp_path / 'other', 'other')
-    *_, install, check, compare = capfd.readouterr().out.splitlines()
+    *_, install, tried, compare = capfd.readouterr().out.splitlines()
     readme = (tmp_path / 'other' / 'README.md').read_text(encoding='utf-8')
-    assert '\n'.join(f'  {line}' for line in (install, check, compare)) in readme
-    assert check.strip() == 'ddct check-controller other'
+    assert '\n'.join(f'  {line}' for line in (install, tried, compare)) in readme
+    assert tried.strip() == 'ddct check other'
     assert f'-m pytest {tmp_path / "other"}`' in readme
 
 
@@ -86,14 +87,14 @@ def test_the_entry_point_leads_to_the_class(tmp_path: Path) -> None:
 def test_a_name_that_cannot_be_used_is_refused(
     capfd: pytest.CaptureFixture[str], tmp_path: Path, name: str, words: str
 ) -> None:
-    assert new_controller.main([name, '--out', str(tmp_path / 'new')]) == 1
-    assert_one_line(capfd.readouterr().err, 'ddct new-controller', words)
+    assert check.main(['--new', name, '--out', str(tmp_path / 'new')]) == 1
+    assert_one_line(capfd.readouterr().err, 'ddct check', words)
     assert not (tmp_path / 'new').exists()
 
 
 def test_a_folder_that_is_there_stays_as_it_is(
     capfd: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    assert new_controller.main(['no_module_yet', '--out', str(tmp_path)]) == 1
-    assert_one_line(capfd.readouterr().err, 'ddct new-controller', f'{tmp_path} exists already')
+    assert check.main(['--new', 'no_module_yet', '--out', str(tmp_path)]) == 1
+    assert_one_line(capfd.readouterr().err, 'ddct check', f'{tmp_path} exists already')
     assert list(tmp_path.iterdir()) == []

@@ -27,7 +27,7 @@ from ddct_bringup.api import shell
 
 BLOCKS = [block for block in SHELL_BLOCKS if in_this_process(block)]
 SAMPLE = sample_of(BLOCKS)
-RUNS = ('ddct bringup --', 'ddct compare --')
+RUNS = 'ddct compare --'
 
 
 @pytest.mark.parametrize('block', SAMPLE, ids=label)
@@ -84,7 +84,7 @@ def test_every_reason_not_to_run_a_command_is_of_a_command_on_a_page() -> None:
 
 def test_commands_in_shell_blocks_begin_with_ddct_or_a_path() -> None:
     """A bare program name works in no shell, and would slip through these tests."""
-    names = {'bringup', 'compare', 'score', 'report', 'live', 'reproduce', 'design', 'identify'}
+    names = {'compare', 'score', 'report', 'live', 'thesis', 'design', 'identify'}
     bare = [
         (block.page, line)
         for block in blocks()

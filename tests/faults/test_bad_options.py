@@ -54,7 +54,7 @@ def test_a_bad_option_is_named_and_nothing_is_written(
     out = tmp_path / 'runs'
     assert bringup.main([*options, '--out', str(out)]) == 1
     printed = capfd.readouterr()
-    assert_one_line(printed.err, 'ddct bringup', *words)
+    assert_one_line(printed.err, 'bringup', *words)
     assert not printed.out
     assert not out.exists()
 
@@ -116,7 +116,7 @@ def test_a_bad_scenario_file_is_named_with_its_key(
     file.write_text(_scenario(change), encoding='utf-8')
     out = tmp_path / 'runs'
     assert bringup.main(['--scenario', str(file), '--headless', '--out', str(out)]) == 1
-    assert_one_line(capfd.readouterr().err, 'ddct bringup', str(file), *words)
+    assert_one_line(capfd.readouterr().err, 'bringup', str(file), *words)
     assert not out.exists()
 
 
@@ -140,7 +140,7 @@ def test_options_that_cannot_be_parsed_end_with_usage_and_code_2(
 
 def test_out_must_be_given(capfd: pytest.CaptureFixture[str]) -> None:
     assert bringup.main([]) == 1
-    assert_one_line(capfd.readouterr().err, 'ddct bringup', '--out is missing')
+    assert_one_line(capfd.readouterr().err, 'bringup', '--out is missing')
 
 
 def test_a_real_time_run_without_a_graph_is_refused(
@@ -148,7 +148,7 @@ def test_a_real_time_run_without_a_graph_is_refused(
 ) -> None:
     out = tmp_path / 'runs'
     assert bringup.main(['--mode', 'realtime', '--headless', '--out', str(out)]) == 1
-    assert_one_line(capfd.readouterr().err, 'ddct bringup', '--headless', 'realtime')
+    assert_one_line(capfd.readouterr().err, 'bringup', '--headless', 'realtime')
     assert not out.exists()
 
 
@@ -162,7 +162,7 @@ def test_a_bad_domain_is_named(
     monkeypatch.setenv('ROS_DOMAIN_ID', domain)
     out = str(tmp_path / 'runs')
     assert bringup.main(['--duration', '0.7', '--single-process', '--out', out]) == 1
-    assert_one_line(capfd.readouterr().err, 'ddct bringup', 'ROS_DOMAIN_ID', repr(domain))
+    assert_one_line(capfd.readouterr().err, 'bringup', 'ROS_DOMAIN_ID', repr(domain))
 
 
 def test_the_program_exits_with_the_code_that_main_returns(
@@ -172,7 +172,7 @@ def test_the_program_exits_with_the_code_that_main_returns(
     arguments = ('--controller', 'pid', '--out', str(out))
     program = programs.start_module('ddct_bringup.programs.bringup', *arguments)
     assert program.wait() == 1
-    assert_one_line(program.errors(), 'ddct bringup', "'pid'")
+    assert_one_line(program.errors(), 'bringup', "'pid'")
     assert not program.output()
 
 

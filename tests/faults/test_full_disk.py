@@ -43,7 +43,7 @@ def test_a_full_disk_ends_the_run_with_the_file_and_the_reason(
     assert bringup.main([*RUN, *layout, '--out', str(out)]) == 1
     assert not processes_left()
     errors = capfd.readouterr().err
-    assert_one_line(errors, 'ddct bringup', 'No space left on device', 'ls8_0.mcap')
+    assert_one_line(errors, 'bringup', 'No space left on device', 'ls8_0.mcap')
     assert not (out / 'ls8').exists()
     assert score.main([str(out / 'ls8.partial')]) == 1
     assert 'incomplete: ' in ' '.join(capfd.readouterr().out.split())
@@ -59,7 +59,7 @@ def test_a_limit_on_the_size_of_files_ends_the_run_with_the_file_and_the_reason(
         assert bringup.main([*RUN, '--headless', '--out', str(out)]) == 1
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
-    assert_one_line(capfd.readouterr().err, 'ddct bringup', 'File too large', 'ls8_0.mcap')
+    assert_one_line(capfd.readouterr().err, 'bringup', 'File too large', 'ls8_0.mcap')
     assert not (out / 'ls8').exists()
 
 

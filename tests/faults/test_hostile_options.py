@@ -40,7 +40,7 @@ def test_a_scenarios_name_writes_nothing_outside_the_runs_folder(
     before = everything_in(tmp_path)
     out = tmp_path / 'a' / 'b' / 'runs'
     assert bringup.main(['--scenario', str(scenario), layout, '--out', str(out)]) == 1
-    assert_one_line(capfd.readouterr().err, 'ddct bringup', str(scenario), 'name is')
+    assert_one_line(capfd.readouterr().err, 'bringup', str(scenario), 'name is')
     assert victim.read_text(encoding='utf-8') == 'mine'
     assert everything_in(tmp_path) == before
 
@@ -64,7 +64,7 @@ def test_a_name_of_300_characters_is_one_line(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert bringup.main(['--headless', *options]) == 1
-    assert_one_line(capfd.readouterr().err, 'ddct bringup', TOO_LONG)
+    assert_one_line(capfd.readouterr().err, 'bringup', TOO_LONG)
     assert everything_in(tmp_path) == set()
 
 

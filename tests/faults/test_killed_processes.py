@@ -68,7 +68,7 @@ def test_a_killed_node_is_named_and_what_was_recorded_is_kept(
     os.kill(node_of(f'{node}_node'), signal.SIGKILL)
     assert bringup.wait() == 1
     assert not processes_left()
-    assert_one_line(bringup.errors(), 'ddct bringup', f'node {node} was killed by SIGKILL')
+    assert_one_line(bringup.errors(), 'bringup', f'node {node} was killed by SIGKILL')
     assert not (tmp_path / 'runs' / 'ls8').exists()
     assert _require_whole_until_its_end(tmp_path / 'runs' / 'ls8.partial', **options) > 20
 
@@ -80,7 +80,7 @@ def test_score_reads_what_a_killed_recorder_wrote_and_gives_no_figures(
     os.kill(node_of('recorder_node'), signal.SIGKILL)
     assert bringup.wait() == 1
     assert not processes_left()
-    assert_one_line(bringup.errors(), 'ddct bringup', 'node recorder was killed by SIGKILL')
+    assert_one_line(bringup.errors(), 'bringup', 'node recorder was killed by SIGKILL')
     bag = tmp_path / 'runs' / 'ls8.partial'
     steps = _require_whole_until_its_end(bag)
     assert steps > 20
@@ -106,7 +106,7 @@ def test_an_interrupted_bringup_stops_its_nodes_and_keeps_what_was_recorded(
     assert bringup.wait(20.0) == 128 + number
     assert not processes_left()
     recorded = f'what was recorded is in {tmp_path / "runs" / "ls8.partial"}'
-    assert_one_line(bringup.errors(), 'ddct bringup', 'interrupted', recorded)
+    assert_one_line(bringup.errors(), 'bringup', 'interrupted', recorded)
     assert not (tmp_path / 'runs' / 'ls8').exists()
     assert _require_whole_until_its_end(tmp_path / 'runs' / 'ls8.partial') > 20
 

@@ -42,7 +42,7 @@ def test_a_folder_with_other_files_is_never_touched(
     before = _snapshot(tmp_path)
     capfd.readouterr()
     assert _run(out, *SHORT, *overwrite) == 1
-    assert_one_line(capfd.readouterr().err, 'ddct bringup', str(foreign), 'not ours')
+    assert_one_line(capfd.readouterr().err, 'bringup', str(foreign), 'not ours')
     assert _snapshot(tmp_path) == before
 
 
@@ -56,7 +56,7 @@ def test_a_file_or_link_in_the_place_of_the_folder_is_never_touched(
     link.symlink_to(folder)
     for out, words in ((file, 'not a folder'), (link, 'symbolic link')):
         assert _run(out, *SHORT, *overwrite) == 1
-        assert_one_line(capfd.readouterr().err, 'ddct bringup', str(out), words)
+        assert_one_line(capfd.readouterr().err, 'bringup', str(out), words)
     assert file.read_text(encoding='utf-8') == 'mine'
     assert link.is_symlink()
     assert not any(folder.iterdir())
@@ -74,7 +74,7 @@ def test_nothing_is_written_through_a_marker_that_is_a_link(
     (out / place / MARKER).unlink(missing_ok=True)
     (out / place / MARKER).symlink_to(mine)
     assert _run(out, *SHORT, *overwrite) == 1
-    assert_one_line(capfd.readouterr().err, 'ddct bringup', str(out / place), 'not ours')
+    assert_one_line(capfd.readouterr().err, 'bringup', str(out / place), 'not ours')
     assert mine.read_text(encoding='utf-8') == 'three years of work'
     assert (out / place / MARKER).is_symlink()
 
@@ -97,7 +97,7 @@ def test_an_earlier_result_stays_without_overwrite(
     before = _snapshot(out)
     capfd.readouterr()
     assert _run(out, *SHORT) == 1
-    assert_one_line(capfd.readouterr().err, 'ddct bringup', str(out / 'pi'), '--overwrite')
+    assert_one_line(capfd.readouterr().err, 'bringup', str(out / 'pi'), '--overwrite')
     assert _snapshot(out) == before
 
 
@@ -132,7 +132,7 @@ def test_a_failed_run_keeps_the_earlier_result(
     before = _snapshot(out / 'fragile')
     capfd.readouterr()
     assert _run(out, *fragile, '--overwrite') == 1
-    assert_one_line(capfd.readouterr().err, 'ddct bringup', 'step 60 is nan')
+    assert_one_line(capfd.readouterr().err, 'bringup', 'step 60 is nan')
     assert _snapshot(out / 'fragile') == before
     assert (out / 'fragile.partial' / 'fragile_0.mcap').is_file(), 'what it recorded is kept'
     assert _run(out, *fragile, *good, '--overwrite') == 0
@@ -148,7 +148,7 @@ def test_a_partial_result_is_named_and_kept_until_overwrite(
     before = _snapshot(out)
     capfd.readouterr()
     assert _run(out, *SHORT) == 1
-    assert_one_line(capfd.readouterr().err, 'ddct bringup', 'pi.partial', '--overwrite')
+    assert_one_line(capfd.readouterr().err, 'bringup', 'pi.partial', '--overwrite')
     assert _snapshot(out) == before
     assert _run(out, *SHORT, '--overwrite') == 0
     assert not (out / 'pi.partial').exists()
@@ -169,7 +169,7 @@ def test_an_output_below_a_file_is_refused(
 ) -> None:
     (tmp_path / 'file').write_text('mine', encoding='utf-8')
     assert _run(tmp_path / 'file' / 'runs', *SHORT) == 1
-    assert_one_line(capfd.readouterr().err, 'ddct bringup', str(tmp_path / 'file' / 'runs'))
+    assert_one_line(capfd.readouterr().err, 'bringup', str(tmp_path / 'file' / 'runs'))
 
 
 def test_an_unwritable_output_is_refused(
@@ -181,4 +181,4 @@ def test_an_unwritable_output_is_refused(
     # Root may write there, but nobody can make a folder in sysfs.
     out = (Path('/sys') if os.access(locked, os.W_OK) else locked) / 'runs'
     assert _run(out, *SHORT) == 1
-    assert_one_line(capfd.readouterr().err, 'ddct bringup', str(out), 'cannot be written')
+    assert_one_line(capfd.readouterr().err, 'bringup', str(out), 'cannot be written')

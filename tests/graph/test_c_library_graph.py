@@ -62,7 +62,7 @@ def test_exit_with_code_0_in_the_process_of_all_nodes_fails_the_run_with_its_rea
     *_, last = capfd.readouterr().err.splitlines()
     log = out / 'harmful.partial' / 'work' / 'all_nodes.log'
     ended = f'the process of all nodes ended with code 0{CALL}'
-    assert last == f'ddct bringup: {ended}; its log is {log}'
+    assert last == f'bringup: {ended}; its log is {log}'
     assert log.exists()
 
 

@@ -76,7 +76,7 @@ def test_a_bringup_beside_another_in_one_domain_is_refused_and_the_first_goes_on
     assert second.wait() == 1
     with own_domain() as domain:
         words = f'another graph runs on this machine with /clock in ROS domain {domain}: wait'
-    assert_one_line(second.errors(), 'ddct bringup', words)
+    assert_one_line(second.errors(), 'bringup', words)
     assert first.wait() == 0, first.errors()
     trajectory = read_bag(tmp_path / 'first' / 'ls8').trajectory
     assert trajectory.sha256() == expected(plan(duration_s=LONG_S)).sha256()

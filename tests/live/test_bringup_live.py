@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""`ddct bringup --live` when there is no viewer, or no way to serve one."""
+"""`bringup --live` when there is no viewer, or no way to serve one."""
 
 import signal
 import socket
@@ -19,7 +19,7 @@ def test_it_needs_a_process_per_node(
     capfd: pytest.CaptureFixture[str], tmp_path: Path, layout: str
 ) -> None:
     assert bringup.main(['--live', '0', layout, '--out', str(tmp_path / 'runs')]) == 1
-    assert_one_line(capfd.readouterr().err, 'ddct bringup', '--live', layout)
+    assert_one_line(capfd.readouterr().err, 'bringup', '--live', layout)
     assert not (tmp_path / 'runs').exists()
 
 
@@ -30,7 +30,7 @@ def test_a_taken_port_ends_it_before_the_run(
     with socket.create_server(('127.0.0.1', 0)) as taken:
         port = str(taken.getsockname()[1])
         assert bringup.main(['--live', port, '--out', str(tmp_path / 'runs')]) == 1
-    assert_one_line(capfd.readouterr().err, 'ddct bringup', f'port {port}', 'in use')
+    assert_one_line(capfd.readouterr().err, 'bringup', f'port {port}', 'in use')
 
 
 @pytest.mark.usefixtures('extras')
@@ -42,4 +42,4 @@ def test_ctrl_c_ends_the_wait_for_a_viewer(programs: Programs, tmp_path: Path) -
     program.send(signal.SIGINT)
     assert program.wait() == 130
     (last,) = program.errors().splitlines()[1:]
-    assert last.startswith('ddct bringup: interrupted: ')
+    assert last.startswith('bringup: interrupted: ')

@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
 PROGRAMS = (
     *(f'ddct_bringup.programs.{name}' for name in ('bringup', 'compare', 'live', 'report')),
-    *(f'ddct_bringup.programs.{name}' for name in ('reproduce', 'score')),
+    *(f'ddct_bringup.programs.{name}' for name in ('score', 'thesis')),
     'ddct_controllers.workflows.design_program',
     'ddct_bringup.identification.identify',
 )

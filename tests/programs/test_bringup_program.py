@@ -46,13 +46,13 @@ def test_a_run_ends_with_its_state_and_the_reason(
 ) -> None:
     arguments = ['--controller', 'ls8', '--headless', '--out', str(tmp_path / 'runs')]
     assert bringup.main(arguments) == 0
-    assert capfd.readouterr().err.endswith('ddct bringup: engaged\n')
+    assert capfd.readouterr().err.endswith('bringup: engaged\n')
     short = [*arguments, '--duration', '0.7', '--overwrite']
     assert bringup.main(short) == 0
-    assert 'ddct bringup: not_engaged: the slip, ' in capfd.readouterr().err
+    assert 'bringup: not_engaged: the slip, ' in capfd.readouterr().err
     arguments += ['--limits', str(tmp_path / 'none.yaml'), '--overwrite']
     assert bringup.main(arguments) == 1
-    assert capfd.readouterr().err.startswith('ddct bringup: limits ')
+    assert capfd.readouterr().err.startswith('bringup: limits ')
 
 
 def test_controllers_share_one_output_folder_and_overwrite_replaces_one(tmp_path: Path) -> None:

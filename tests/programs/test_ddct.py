@@ -16,12 +16,14 @@ from support.processes import Programs, processes_left
 from waiting import WITHIN_S
 
 from ddct_bringup import processes
-from ddct_bringup.programs import ddct
+from ddct_bringup.programs import ddct, node
 from ddct_plant.program import command_line
-from ddct_plant.program.command_line import programs
+from ddct_plant.program.command_line import programs, scripts
 
 ROOT = Path(__file__).resolve().parents[2]
-PACKAGES = ('ddct_bringup', 'ddct_controllers', 'ddct_plant', 'ddct_reference')
+
+
+GROUPS = ('ddct.programs', 'ddct.scripts')
 
 
 def install_program(site: Path, code: str) -> None:
@@ -30,7 +32,8 @@ def install_program(site: Path, code: str) -> None:
     record.mkdir()
     (site / 'extra_program.py').write_text(code)
     (record / 'METADATA').write_text('Metadata-Version: 2.1\nName: extra\nVersion: 1.0\n')
-    (record / 'entry_points.txt').write_text('[ddct.programs]\nextra = extra_program:main\n')
+    points = ''.join(f'[{each}]\nextra = extra_program:main\n' for each in GROUPS)
+    (record / 'entry_points.txt').write_text(points)
 
 
 def help_text(capsys: pytest.CaptureFixture[str]) -> str:
@@ -40,22 +43,37 @@ def help_text(capsys: pytest.CaptureFixture[str]) -> str:
     return capsys.readouterr().out
 
 
-def test_help_lists_every_program_with_what_it_does(capsys: pytest.CaptureFixture[str]) -> None:
+def test_help_lists_every_program_by_task_in_80_columns(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     text = help_text(capsys)
-    packages = re.findall(r'^(\w+):\n((?:  .*\n)+)', text, re.MULTILINE)
-    assert tuple(name for name, _ in packages if name.startswith('ddct_')) == PACKAGES
-    columns = set()
-    for name in programs():
-        ((before, task),) = re.findall(rf'^(  {name}  +)(.*)', text, re.MULTILINE)
-        assert len(task.split()) >= 4 and 'cannot be read' not in task
-        columns.add(len(before))
-    assert len(columns) == 1
+    listed = [name for names in ddct.TASKS.values() for name in names]
+    assert sorted(listed) == sorted(programs())
+    found = re.findall(r'^(  (\w+)  +)(\w.*)', text.partition('positional')[0], re.MULTILINE)
+    assert [name for _, name, _ in found] == listed
+    assert len({len(before) for before, _, _ in found}) == 1
+    for _, name, task in found:
+        assert len(task.split()) >= 4 and 'cannot be read' not in task, name
+    assert max(map(len, text.splitlines())) <= 80
+
+
+def test_node_starts_the_nodes_alone(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, 'argv', ['ddct', 'node', 'load', '--help'])
+    assert ddct.main() == 0
+    assert 'usage: ddct node load ' in capsys.readouterr().out
+    assert set(node.node_names()) == set(scripts()) - {'bringup', 'live', 'score'}
+    with pytest.raises(SystemExit):
+        node.main(['loda'])
+    assert capsys.readouterr().err == (
+        'ddct node: unknown node loda: did you mean load?: see ddct node --help\n'
+    )
 
 
 def test_programs_start_without_the_slow_parts_of_scipy() -> None:
     """Scipy is imported when something is computed: --help and errors need not wait for it."""
     names = (
-        'bringup',
         'campaign',
         'compare',
         'identify',
@@ -82,6 +100,7 @@ def test_programs_start_without_the_slow_parts_of_scipy() -> None:
     ('arguments', 'line'),
     [
         (['comparee'], 'unknown program comparee: did you mean compare?'),
+        (['driveline'], 'unknown program driveline: did you mean node driveline?'),
         ([], 'the following arguments are required: PROGRAM'),
         (['--nothing'], 'the following arguments are required: PROGRAM'),
     ],
@@ -200,7 +219,7 @@ def test_a_sourced_workspace_has_it_on_the_path() -> None:
     if not (prefix / 'setup.bash').exists():
         pytest.skip('the workspace is not built: make setup')
     done = subprocess.run(
-        ['bash', '-c', f'. {prefix}/setup.bash; command -v ddct; cd /; ddct load --help'],
+        ['bash', '-c', f'. {prefix}/setup.bash; command -v ddct; cd /; ddct node load --help'],
         env={'PATH': os.defpath, 'HOME': os.environ.get('HOME', '/')},
         capture_output=True,
         text=True,
@@ -209,17 +228,16 @@ def test_a_sourced_workspace_has_it_on_the_path() -> None:
     )
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines()[0].endswith('/bin/ddct')
-    assert 'usage: ddct load ' in done.stdout
+    assert 'usage: ddct node load ' in done.stdout
 
 
 @pytest.mark.parametrize(
     ('arguments', 'expected'),
     [
-        (['bringup'], 1),
         (['compare', '--controllers', 'pi'], 1),
-        (['bringup', '--headless'], 0),
+        (['compare', '--headless'], 0),
         (['compare', '--list'], 0),
-        (['bringup', '--help'], 0),
+        (['compare', '--help'], 0),
         (['score', '--help'], 0),
     ],
 )
@@ -236,7 +254,7 @@ def test_the_fork_server_starts_ahead_where_nodes_are_to_come(
 
 def test_a_fork_server_started_in_vain_ends_with_its_program(programs: Programs) -> None:
     start = 'from ddct_bringup.programs.ddct import main; raise SystemExit(main())'
-    program = programs.start([sys.executable, '-P', '-c', start, 'bringup'])
+    program = programs.start([sys.executable, '-P', '-c', start, 'compare'])
     assert program.wait() == 1
-    assert_one_line(program.errors(), 'ddct bringup', '--out is missing')
+    assert_one_line(program.errors(), 'ddct compare', '--out is missing')
     assert not processes_left()

@@ -8,11 +8,9 @@ import pytest
 from support.installed import installed
 from support.processes import Programs
 
-from ddct_plant.program.command_line import programs as installed_programs
+from ddct_plant.program.command_line import scripts
 
-PROGRAMS = sorted(
-    (point.module.partition('.')[0], name) for name, point in installed_programs().items()
-)
+PROGRAMS = sorted((point.module.partition('.')[0], name) for name, point in scripts().items())
 
 
 @pytest.mark.parametrize(('package', 'program'), PROGRAMS, ids=[name for _, name in PROGRAMS])

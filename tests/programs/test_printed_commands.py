@@ -21,7 +21,8 @@ from unittest import mock
 
 import pytest
 
-from ddct_bringup.programs.ddct import programs
+from ddct_bringup.programs.node import node_names
+from ddct_plant.program.command_line import programs
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
@@ -111,19 +112,14 @@ def known_programs() -> dict[str, EntryPoint]:
     return programs()
 
 
-def is_node(program: str) -> bool:
-    """Return whether a program is a node, whose arguments are those of ROS."""
-    return known_programs()[program].module.endswith('_node')
-
-
 def why_wrong(command: str, *, whole: bool) -> str:
     """Return what is wrong with a command, empty where its program takes it."""
     words = shlex.split(command, comments=True)
     words = [FILLED_IN if _VALUE.fullmatch(word) else word for word in words]
     if len(words) < 2 or words[1] not in known_programs():
         return '' if words[1:] in ([], ['PROGRAM']) else 'no such program'
-    if is_node(words[1]):
-        return ''
+    if words[1] == 'node':  # the arguments are those of ROS
+        return '' if {*words[2:3]} <= {FILLED_IN, *node_names()} else 'no such node'
     main, parser = known_programs()[words[1]].load(), argparse.ArgumentParser
 
     def parsed(self: Any, arguments: Any = None, namespace: Any = None) -> None:

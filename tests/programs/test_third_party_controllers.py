@@ -73,7 +73,7 @@ def test_a_gain_that_the_example_does_not_take_is_named(
 ) -> None:
     arguments = ['--controller', 'dead_zone', '--set', 'controllers.dead_zone.speed=1']
     assert bringup.main([*arguments, '--headless', '--out', str(tmp_path / 'runs')]) == 1
-    assert_one_line(capfd.readouterr().err, 'ddct bringup', 'controllers.dead_zone.speed')
+    assert_one_line(capfd.readouterr().err, 'bringup', 'controllers.dead_zone.speed')
     assert not (tmp_path / 'runs').exists()
 
 
@@ -144,9 +144,7 @@ def test_a_command_that_cannot_be_used_ends_the_run_with_one_line(
     out = tmp_path / 'runs'
     assert bringup.main(['--controller', name, layout, '--out', str(out)]) == 1
     place = 'broken_controllers.py line '
-    assert_one_line(
-        capfd.readouterr().err, 'ddct bringup', f'controller {name!r}: it', words, place
-    )
+    assert_one_line(capfd.readouterr().err, 'bringup', f'controller {name!r}: it', words, place)
     assert not (out / name).exists()
 
 
@@ -208,7 +206,7 @@ def test_bringup_names_the_controller_that_raised_and_keeps_its_traceback_in_a_l
     assert bringup.main(['--controller', 'raising', '--out', str(out)]) == 1
     errors = capfd.readouterr().err
     words = "controller 'raising': it failed at step 60 (ZeroDivisionError: float division by zero"
-    assert_one_line(errors, 'ddct bringup', 'node controller', words)
+    assert_one_line(errors, 'bringup', 'node controller', words)
     log = out / 'raising.partial' / 'work' / 'controller.log'
     assert str(log) in errors
     assert 'Traceback' in log.read_text(encoding='utf-8')

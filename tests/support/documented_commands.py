@@ -21,16 +21,16 @@ NOT_RUN_HERE = {
     '. /opt/ros': "needs apt's ROS 2",
     'git clone': 'is how one comes here',
     '.venv/bin/': 'would change the environment of the tests; tests/fmu, tests/conformance run it',
-    'ddct new-controller': 'takes a name that is free; tests/conformance runs it and what follows',
+    'ddct check --new': 'takes a name that is free; tests/conformance runs it and what follows',
     'ddct compare --controllers pi,mine.yaml': 'needs an FMU; tests/fmu gives it one',
     'python -m pip': 'would change the environment of the tests',
     'jupyter lab': 'serves until Ctrl-C; tests/nightly/docs executes the notebooks',
     'python3 -m venv': 'tests/packaging/test_without_ros.py runs what pip would install',
     '. my-env': 'nothing is installed there by the tests',
-    'ddct bringup --mode realtime --controller ls8 --live': (
+    'ddct compare --mode realtime --controllers ls8 --live': (
         'waits for a viewer; tests/live gives it one'
     ),
-    'ddct clutch --ros-args -p qos_overrides': (
+    'ddct node clutch --ros-args -p qos_overrides': (
         'serves until Ctrl-C; tests/graph/test_qos_overrides.py stops it'
     ),
     'ddct campaign docs/examples/robustness': (
@@ -52,13 +52,13 @@ _TOOLS = ('cp ', 'cc ')
 """Commands of others that end by themselves."""
 _OWN_PROCESS = ('&', 'realtime', 'ddct campaign')
 """Parts of commands that need processes of their own; a campaign's workers outlast a test."""
-_WITH_SUBCOMMANDS = {'design', 'reproduce', 'campaign'}
+_WITH_SUBCOMMANDS = {'design', 'thesis', 'campaign', 'node'}
 _NIGHTLY = (
-    'ddct check-controller',
+    'ddct check',
     'ddct design h-infinity',
-    'ddct reproduce numbers',
-    'ddct reproduce figures',
-    'ddct reproduce studies',
+    'ddct thesis numbers',
+    'ddct thesis figures',
+    'ddct thesis studies',
     'ddct verify',
 )
 """Commands that take more than a few seconds; other tests run parts of them."""

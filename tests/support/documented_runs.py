@@ -17,7 +17,7 @@ import pytest
 from ddct_bringup.run import execution
 from ddct_bringup.run.plan import RunPlan
 from ddct_controllers.registry import controller_names
-from ddct_controllers.template.new_controller import write_package
+from ddct_controllers.template.package import write_package
 from ddct_plant.scenario.file import scenario_to_yaml
 from support.documented import ROOT, blocks
 
@@ -30,7 +30,7 @@ def example_on(page: str) -> str:
 
 
 def install_example(site: Path) -> None:
-    """Install the class that the page shows, and what new-controller writes, as `my_slip`."""
+    """Install the class that the page shows, and what `ddct check --new` writes, as `my_slip`."""
     code = example_on('docs/controllers/writing.md')
     package, record = site / 'my_package', site / 'my_package-1.0.dist-info'
     for folder in (package, record):

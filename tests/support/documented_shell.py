@@ -17,7 +17,7 @@ ROS2 = """\
 #!{shell}
 [ "$1 $2 $3" = 'run my_actuator my_actuator' ] || exit 2
 shift 3
-exec ddct actuator "$@"
+exec ddct node actuator "$@"
 """
 
 

@@ -11,7 +11,7 @@ import pytest
 import yaml
 from by_schema import require_schema
 
-from ddct_bringup.programs import reproduce
+from ddct_bringup.programs import thesis
 from ddct_bringup.reproduction.numbers import command
 from ddct_bringup.reproduction.numbers.command import SOURCES, compute
 from ddct_bringup.reproduction.numbers.gate import GateRow, NumbersDocument, judge
@@ -167,7 +167,7 @@ def test_list_has_table_5_1_as_the_calibration_uses_it() -> None:
 def test_program_writes_every_number_as_json_alone(
     capsys: pytest.CaptureFixture[str], rows: tuple[GateRow, ...]
 ) -> None:
-    assert reproduce.main(['numbers', '--json', '-']) == 0
+    assert thesis.main(['numbers', '--json', '-']) == 0
     content = json.loads(capsys.readouterr().out)
     tables = {name: table.written for name, table in page_tables(rows).items()}
     require_schema('numbers', content)
@@ -183,20 +183,20 @@ def test_program_writes_every_number_as_json_alone(
 def test_program_writes_the_same_numbers_as_csv(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], rows: tuple[GateRow, ...]
 ) -> None:
-    assert reproduce.main(['numbers', '--csv', '-', '--json', str(tmp_path / 'n.json')]) == 0
+    assert thesis.main(['numbers', '--csv', '-', '--json', str(tmp_path / 'n.json')]) == 0
     found = list(csv.DictReader(capsys.readouterr().out.splitlines(keepends=True)))
     written = json.loads((tmp_path / 'n.json').read_text())['numbers']
     assert len(found) == len(rows) == len(written)
     for cells, number in zip(found, written, strict=True):
         assert cells == {k: '' if v is None else str(v) for k, v in number.items()}
-    assert reproduce.main(['numbers', '--csv', '-', '--json', '-']) == 1
+    assert thesis.main(['numbers', '--csv', '-', '--json', '-']) == 1
     assert 'both want standard output' in capsys.readouterr().err
-    assert reproduce.main(['numbers', '--csv', str(tmp_path / 'no' / 'n.csv')]) == 1
+    assert thesis.main(['numbers', '--csv', str(tmp_path / 'no' / 'n.csv')]) == 1
     assert 'there is no folder' in capsys.readouterr().err
 
 
 def test_program_prints_the_tables(capsys: pytest.CaptureFixture[str]) -> None:
-    assert reproduce.main(['numbers']) == 0
+    assert thesis.main(['numbers']) == 0
     printed = capsys.readouterr().out
     assert 'Errata of the thesis' in printed and 'distinct facts' in printed
 
@@ -206,9 +206,9 @@ def test_program_without_one_of_its_sources_reports_its_numbers_as_not_computed(
 ) -> None:
     without = {name: source for name, source in SOURCES.items() if name != 'closed loop'}
     monkeypatch.setattr(command, 'SOURCES', without)
-    assert reproduce.main(['numbers']) == 1
+    assert thesis.main(['numbers']) == 1
     *_, error = capsys.readouterr().err.splitlines()
     assert error.startswith(
-        'ddct reproduce: the gate does not hold: 1.5.1, w_d of the three simplified models beside '
+        'ddct thesis: the gate does not hold: 1.5.1, w_d of the three simplified models beside '
         'the detailed model: nothing was computed for it; '
     )

@@ -5,7 +5,7 @@
 import tempfile
 from pathlib import Path
 
-from bench.workspaces import run
+from bench.workspaces import bringup, run
 
 READ, WRITE = 'read', 'write'
 _PROGRAM = """\
@@ -36,13 +36,13 @@ def bag_s(workspace: Path, what: str, *options: str) -> float:
     Return the processor time in s of reading or of writing the bag of a headless run of 20 s.
 
     It is the least of five; what is imported and found out once does not count. `options` are
-    those of `ddct bringup`.
+    those of `bringup`.
     """
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         length = ('--set', 'duration_s=20')
-        command = ('bringup', '--controller', 'pi', '--headless', *length, *options)
-        run(workspace, 'ddct', *command, '--out', folder / 'runs')
+        command = ('--controller', 'pi', '--headless', *length, *options)
+        run(workspace, bringup(workspace), *command, '--out', folder / 'runs')
         python = workspace / '.venv' / 'bin' / 'python'
         shown = run(workspace, python, '-c', _PROGRAM, folder / 'runs' / 'pi', folder, what)
     return float(shown)

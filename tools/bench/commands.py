@@ -13,7 +13,7 @@ from typing import Any
 from bench.bags import READ, WRITE, bag_s
 from bench.chain import chain_step_s
 from bench.ratios import Comparison
-from bench.workspaces import ROOT, run
+from bench.workspaces import ROOT, bringup, run
 from ddct_plant.base.timebase import PERIOD_S
 
 STEPS = 1000
@@ -30,11 +30,11 @@ random:
 
 
 def step_s(workspace: Path, *options: str) -> float:
-    """Return the wall time per step in s of a run by `ddct bringup`, from first to last tick."""
+    """Return the wall time per step in s of a run by `bringup`, from first to last tick."""
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / 'run'
         steps = ('--set', f'duration_s={STEPS * PERIOD_S}')
-        run(workspace, 'ddct', 'bringup', '--controller', 'pi', *steps, *options, '--out', out)
+        run(workspace, bringup(workspace), '--controller', 'pi', *steps, *options, '--out', out)
         (file,) = out.glob('*/timing.json')
         timing: dict[str, Any] = json.loads(file.read_text(encoding='utf-8'))
     return float(timing['wall_time_s']) / float(timing['steps'])
@@ -77,6 +77,7 @@ def beside(base: Path) -> list[Comparison]:
         sides = partial(cost, ROOT, *words), partial(cost, base, *words)
         return Comparison(name, 'the base commit', lambda: sides)
 
+    one = ('--controllers', 'pi')
     demo = ('--controllers', 'pi,ls8,hinf1,mpc3,mpc4')
     stick_slip = ('--scenario', 'thesis_sticking')
     sticking = ('--controller', 'mpc3', *stick_slip)
@@ -89,7 +90,7 @@ def beside(base: Path) -> list[Comparison]:
         compared(SINGLE_STEP, step_s, SINGLE),
         compared('headless step of pi', step_s, *_HEADLESS),
         compared('headless step of mpc3, sticking plates', step_s, *_HEADLESS, *sticking),
-        compared('bringup, start and end included', program_s, 'bringup'),
+        compared('compare of one, start and end included', program_s, 'compare', *one),
         compared('compare of the demo', program_s, 'compare', *demo),
         compared('campaign of 2000 linear runs', campaign_s),
     ]

@@ -41,6 +41,11 @@ def run(folder: Path, *command: object) -> str:
     return _to_end(folder, environment_of(folder), *command)
 
 
+def bringup(folder: Path) -> Path:
+    """Return the program of a workspace that runs one controller and leaves its bag alone."""
+    return folder / 'install' / 'ddct_bringup' / 'lib' / 'ddct_bringup' / 'bringup'
+
+
 @contextmanager
 def base_workspace(revision: str) -> Iterator[Path]:
     """Check a commit out into a temporary folder, run `make setup` there, remove it at the end."""

@@ -20,7 +20,7 @@ from faults.program_runs import (
 
 ONE_LINE = Stated(
     'an error of one line',
-    lambda seen: seen.error.startswith('ddct bringup: ') and not seen.complete,
+    lambda seen: seen.error.startswith('bringup: ') and not seen.complete,
 )
 KILLED = Stated(
     'the nodes end, the recording is no result',

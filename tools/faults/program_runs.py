@@ -66,7 +66,7 @@ def observe(case: Case, program: Program, out: Path, seen: Observed) -> Observed
     """Wait for the end of `bringup` and read what it printed and recorded."""
     code = program.wait(END_S)
     errors = program.errors()
-    lines = [line for line in errors.splitlines() if line.startswith('ddct bringup: ')]
+    lines = [line for line in errors.splitlines() if line.startswith('bringup: ')]
     if code not in (0, None) and not seen.error:
         seen.error = (lines[-1] if lines else f'code {code}').partition('; its log')[0]
     if 'Traceback' in errors:

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from bench.chain import WIRING
-from bench.workspaces import ROOT, environment_of, started
+from bench.workspaces import ROOT, bringup, environment_of, started
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.graph.domain import own_domain
 from soak.process_use import Sample, samples_below
@@ -28,7 +28,7 @@ class SoakError(Exception):
 
 @dataclass(frozen=True)
 class Graph:
-    """A real-time run by `ddct bringup` with a recorder, a process for each node."""
+    """A real-time run by `bringup` with a recorder, a process for each node."""
 
     process: subprocess.Popen[bytes]
     out: Path
@@ -60,7 +60,7 @@ def graph(steps: int, prefix: Sequence[str]) -> Iterator[Graph]:
         tempfile.TemporaryFile() as errors,
     ):
         out = Path(folder) / 'run'
-        command = [*prefix, 'ddct', 'bringup', '--controller', 'pi', '--mode', 'realtime']
+        command = [*prefix, str(bringup(ROOT)), '--controller', 'pi', '--mode', 'realtime']
         command += ['--floors', 'none', '--set', f'duration_s={steps * PERIOD_S}']
         command += ['--out', str(out)]
         with started(command, environment, output, errors) as process:

@@ -8,7 +8,7 @@ The shortest example::
     from ddct_bringup.api import run
     print(run('pi', wear_gain=0.7).metrics['engagement_time_s'])
 
-Arguments have the names of the options of `ddct bringup`. An invalid one raises `DdctError` or its
+Arguments have the names of the options of `ddct compare`. An invalid one raises `DdctError` or its
 subclass `ParameterError`. Nothing is printed; scenario values that were adjusted give a warning.
 
 The module of a name is imported when the name is first used: to import this package is cheap, and

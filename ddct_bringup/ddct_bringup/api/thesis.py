@@ -34,7 +34,7 @@ class ThesisNumbers(NamedTuple):
     pandas DataFrame with a row per printed number, in the order of the sections.
 
     Columns: `section`, `item`, `printed`, `computed`, `unit`, `tolerance`, `verdict`, `hit`,
-    `group`, `reason` as in `ddct reproduce numbers --json`, and `outcome`.
+    `group`, `reason` as in `ddct thesis numbers --json`, and `outcome`.
     """
     facts: Any
     """pandas DataFrame by outcome: the number of `entries`, and of distinct `facts` in them."""

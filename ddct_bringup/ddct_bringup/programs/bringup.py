@@ -1,39 +1,34 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Program `bringup`: start the graph, wait for its end, stop it, leave one bag."""
+"""Program `bringup` of `ros2 run`: start the graph, wait for its end, stop it, leave one bag."""
 
 import argparse
-from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
 
 from ddct_bringup.api import shell
 from ddct_bringup.programs.options.of_runs import (
-    DEFAULT_PORT,
     add_floors_option,
     add_limits_option,
+    add_live_option,
     add_run_options,
+    execution,
     settings_given,
     wants_floors,
 )
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
 
-PROGRAM = 'ddct bringup'
+PROGRAM = 'bringup'
 _complain = partial(complain, PROGRAM)
 
 _EPILOG = """\
-examples:
-  ddct bringup --out runs/first                          the PI of the thesis
-  ddct bringup --controller ls8 --out runs/first         another one into the same folder
-  ddct bringup --controller mine.py --out runs/first     the class in a Python file
-  ddct bringup --wear-gain 0.7 --set load.slope_rad=0.05 --out runs/worn-uphill
-  ddct bringup --case vehicle.mass_kg=1700 --out runs/loaded     a mass that no controller knows
-  ddct bringup --mode realtime --out runs/realtime       100 Hz on the wall clock
-  ddct bringup --headless --out runs/quick               the same numbers without a graph
-  ddct bringup --mode realtime --live --out runs/live    watch it in Foxglove
-  ddct bringup --out runs/car --ros-args -r __ns:=/car -r /clock:=/car/clock     in a namespace
+examples, where ROS 2's own command line is installed:
+  ros2 run ddct_bringup bringup --out runs/first                     the PI of the thesis
+  ros2 run ddct_bringup bringup --controller ls8 --out runs/first    one more, same folder
+  ros2 run ddct_bringup bringup --mode realtime --live --out runs/live
 
+`ddct compare` takes the same options, and leaves scores and a page too.
 The bag is DIR/<controller>/<controller>_0.mcap. A run that fails leaves what it recorded
 in DIR/<controller>.partial. ROS_DOMAIN_ID is respected; without it a free domain is taken.
 """
@@ -63,15 +58,9 @@ def _bringup(argv: list[str]) -> int:
         **settings_given(options),
     )
     shell.print_adjusted(plan.settings.scenario)
-    if options.live is not None and plan.layout != 'processes':
-        raise ParameterError(f'--live shows a process per node: drop it or --{plan.layout}')
-
-    def execute(plan: 'shell.RunPlan', folder: Path) -> 'shell.Recording | None':
-        live = options.live is not None
-        with shell.live_view(options.live, graph) if live else nullcontext() as view:
-            return shell.run_with_progress(plan, folder, live=view)
-
-    run = shell.keep_run(plan, options.out, limits, execute, overwrite=options.overwrite)
+    run = shell.keep_run(
+        plan, options.out, limits, execution(options), overwrite=options.overwrite
+    )
     folder = run.path.parent
     if not run.scores.valid:
         _print_notes(run, folder)
@@ -114,14 +103,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         '--out', type=Path, metavar='DIR', help='the bag goes to DIR/<controller>/'
     )
-    parser.add_argument(
-        '--live',
-        nargs='?',
-        type=int,
-        const=DEFAULT_PORT,
-        metavar='PORT',
-        help=f'let Foxglove watch; the run waits for it; PORT is {DEFAULT_PORT} unless given',
-    )
+    add_live_option(parser)
     add_limits_option(parser)
     add_floors_option(parser)
     add_run_options(parser)

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Program `campaign`: compute how controllers fare over many plants, and make any run again."""
+"""Program `campaign`: run controllers over many plants; `replay` makes any run again."""
 
 import argparse
 import sys

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Program `compare`: run several controllers, score them, and set them beside the thesis."""
+"""Program `compare`: run one controller or several in the same closed loop, and score."""
 
 import argparse
 import sys
@@ -14,7 +14,9 @@ from ddct_bringup.programs.options.of_runs import (
     add_controllers_option,
     add_floors_option,
     add_limits_option,
+    add_live_option,
     add_run_options,
+    execution,
     settings_given,
     wants_floors,
 )
@@ -27,10 +29,16 @@ _complain = partial(complain, PROGRAM)
 
 _EPILOG = """\
 examples:
+  ddct compare --controllers ls8 --out runs/first               one run through the graph
   ddct compare --controllers pi,ls8,hinf1 --out runs/demo --overwrite
-  ddct compare --controllers all --wear-gain 0.7 --out runs/worn
-  ddct compare --controllers pi,mine --headless --json - --out runs/mine
-  ddct compare --controllers pi,mine.py --headless --out runs/mine     the class in a file
+  ddct compare --controllers pi,mine.py --headless --out runs/mine     no ROS, a class in a file
+  ddct compare --controllers all --wear-gain 0.7 --set load.slope_rad=0.05 --out runs/worn
+  ddct compare --controllers pi --case vehicle.mass_kg=1700 --out runs/loaded
+                                                   a mass that no controller knows
+  ddct compare --controllers ls8 --mode realtime --live --out runs/live
+                                                   100 Hz on the wall clock, seen in Foxglove
+  ddct compare --controllers pi --out runs/car --ros-args -r __ns:=/car -r /clock:=/car/clock
+                                                   in a namespace
 
 Writes one bag per controller, DIR/scores.json, DIR/frequency.json with the margins of the
 linear ones, and DIR/report.html, a page that shows all of it. A run that fails does not stop the
@@ -67,8 +75,10 @@ def _compare(argv: list[str]) -> int:
         **settings_given(options),
     )
     shell.print_adjusted(plans[0].settings.scenario)
+    if options.live is not None and len(plans) > 1:
+        raise ParameterError(f'--live shows one run, not {len(plans)}: name one controller')
     comparer = shell.Comparer(
-        shell.run_with_progress, _complain, partial(_show, plans, options, limits)
+        execution(options), _complain, partial(_show, plans, options, limits)
     )
     floors = wants_floors(options)
     try:
@@ -118,7 +128,7 @@ def _failures(
 def _parser() -> argparse.ArgumentParser:
     parser = ProgramParser(
         prog=PROGRAM,
-        description='Run controllers in the same closed loop and compare their scores.',
+        description='Run controllers, one or several, in the same closed loop; record and score.',
         epilog=_EPILOG,
     )
     add_controllers_option(parser)
@@ -126,6 +136,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--json', metavar='FILE', help="also write the scores; '-' is stdout")
     add_limits_option(parser)
     add_floors_option(parser)
+    add_live_option(parser)
     add_run_options(parser)
     return parser
 

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Program `live`: serve the running graph to Foxglove."""
+"""Program `live`: show the running graph in Foxglove."""
 
 import argparse
 import os
@@ -19,10 +19,11 @@ _NICENESS = 10
 
 _EPILOG = """\
 examples:
-  ddct live                        serve ROS domain 0, or that of ROS_DOMAIN_ID
-  ddct live --port 9000            another port; 0 takes a free one
-  ddct live --host 0.0.0.0         let other machines connect, with no password
-  ddct bringup --live --out DIR    a run with its own live view, in a domain of its own
+  ddct live                   serve ROS domain 0, or that of ROS_DOMAIN_ID
+  ddct live --port 9000       another port; 0 takes a free one
+  ddct live --host 0.0.0.0    let other machines connect, with no password
+  ddct compare --controllers pi --live --out DIR
+                              a run with its own live view, in a domain of its own
 
 Open the printed address in Foxglove: Open connection, Foxglove WebSocket. The graph may start
 before or after; Ctrl-C ends the server. Arguments behind --ros-args go to the node.

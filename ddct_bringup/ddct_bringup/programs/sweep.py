@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Program `sweep`: run controllers over the values of a key; print a table, draw a figure."""
+"""Program `sweep`: a short campaign over the values of a key: a table, a figure."""
 
 import argparse
 import sys

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Program `tune`: search the options of a controller, and write the best as a controller file."""
+"""Program `tune`: search the options of a controller; writes the best as a file."""
 
 import argparse
 import sys

@@ -11,7 +11,7 @@ from unittest import mock
 
 from ddct_bringup.programs import ddct
 
-_GRAPHS = (['bringup'], ['compare'], ['campaign', 'replay'])
+_GRAPHS = (['compare'], ['campaign', 'replay'])
 """First words of programs that run a graph unless it is left out, which is faster."""
 _WITHOUT_GRAPH = {'--help', '--list', '--headless', '--single-process', 'realtime'}
 

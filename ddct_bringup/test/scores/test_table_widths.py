@@ -15,7 +15,7 @@ from ddct_bringup.campaign_report.document import campaign_document
 from ddct_bringup.documents.terminal import print_document
 from ddct_bringup.evaluation.summarise import summary_of
 from ddct_bringup.identification import identify
-from ddct_bringup.programs import benchmark, limit, reproduce, sweep
+from ddct_bringup.programs import benchmark, limit, sweep, thesis
 from ddct_controllers.check import program as check_controller
 from ddct_controllers.workflows import design_program
 
@@ -42,7 +42,7 @@ def _sweep() -> None:
 PROGRAMS: dict[str, Callable[[], object]] = {
     'benchmark --packaged': lambda: benchmark.main(['--packaged']),
     'campaign': _campaign,
-    'check-controller': lambda: check_controller.main(['pi']),
+    'check': lambda: check_controller.main(['pi']),
     'design loop-shaping': lambda: design_program.main(['loop-shaping']),
     'design margins': lambda: design_program.main(['margins', '--controller', 'ls8']),
     'design plant': lambda: design_program.main(['plant']),
@@ -52,13 +52,13 @@ PROGRAMS: dict[str, Callable[[], object]] = {
         ['--scenario', 'launch', '--lock-times', '1.0']
         + ['--metrics', 'friction_energy', '--controllers', 'pi']
     ),
-    'reproduce numbers': lambda: reproduce.main(['numbers']),
-    'reproduce studies': lambda: reproduce.main(['studies', '--study', 'torsion_weight']),
+    'thesis numbers': lambda: thesis.main(['numbers']),
+    'thesis studies': lambda: thesis.main(['studies', '--study', 'torsion_weight']),
     'sweep': _sweep,
     'sweep --list': lambda: sweep.main(['--list']),
 }
 
-LONG = ('benchmark --packaged', 'reproduce numbers')
+LONG = ('benchmark --packaged', 'thesis numbers')
 """Programs that take a second."""
 
 

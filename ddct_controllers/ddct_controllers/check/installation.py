@@ -16,7 +16,7 @@ from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.interface import Controller, ControllerContext
 from ddct_controllers.plugins import CONTROLLERS
 from ddct_controllers.registry import require_known_controllers
-from ddct_controllers.template.new_controller import install_command
+from ddct_controllers.template.package import install_command
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import close_name
 from ddct_plant.files.json_records import parse_json

@@ -1,12 +1,15 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Program `check-controller`: find a controller's errors before its scores do."""
+"""Program `check`: find a controller's errors; --new writes a package to start from."""
 
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from ddct_controllers.check.checks import FAIL, Outcome, check_controller
+from ddct_controllers.template.package import write_new
+from ddct_plant.base.errors import ParameterError
 from ddct_plant.files.output_file import require_place
 from ddct_plant.program.command_line import ProgramParser, complain, run_program, show_and_write
 from ddct_plant.program.printed_table import print_table
@@ -15,21 +18,23 @@ from ddct_plant.scenario.choices.command_line import add_scenario_options
 from ddct_plant.scenario.chosen import scenario_of
 from ddct_plant.scenario.settings import KnownSettings
 
-PROGRAM = 'ddct check-controller'
+PROGRAM = 'ddct check'
 _DESCRIPTION = """\
 Try a controller alone and in the closed loop, and say what is wrong with it: where, and what to
-do. The exit code is 1 when a check fails."""
+do. The exit code is 1 when a check fails. With --new, write a package with a controller to start
+from, with its entry point, test and README."""
 _EPILOG = """\
 examples:
-  ddct check-controller mine                             a controller of an installed package
-  ddct check-controller mine.py                          the class in a Python file
-  ddct check-controller designs/mine.yaml --json -       one in a YAML file
-  ddct check-controller mine --set controllers.mine.gain=0.2"""
+  ddct check mine.py                           the class in a Python file
+  ddct check mine                              a controller of an installed package
+  ddct check designs/mine.yaml --json -        one in a YAML file
+  ddct check mine --set controllers.mine.gain=0.2
+  ddct check --new my_slip                     the package my_slip, to edit and install"""
 
 
 @dataclass(frozen=True)
 class CheckReport:
-    """Document of `check-controller --json`."""
+    """Document of `ddct check --json`."""
 
     controller: str
     checks: Sequence[Outcome]
@@ -42,10 +47,24 @@ def main(argv: list[str] | None = None) -> int:
 
 def _check(argv: list[str]) -> int:
     parser = ProgramParser(prog=PROGRAM, description=_DESCRIPTION, epilog=_EPILOG)
-    parser.add_argument('controller', metavar='NAME|FILE', help='FILE is .py or .yaml')
+    chosen = parser.add_mutually_exclusive_group(required=True)
+    chosen.add_argument('controller', nargs='?', metavar='NAME|FILE', help='FILE is .py or .yaml')
+    chosen.add_argument(
+        '--new',
+        metavar='NAME',
+        help='write a package with this controller: lower-case letters, digits, underscores',
+    )
+    parser.add_argument(
+        '--out', type=Path, metavar='DIR', help='folder for --new, not there yet; default: NAME'
+    )
     add_scenario_options(parser, set_example='controllers.mine.gain=0.2')
     parser.add_argument('--json', metavar='FILE', help="write the report; '-' is stdout")
     options = parser.parse_args(argv)
+    if options.new is not None:
+        print(write_new(options.new, options.out))
+        return 0
+    if options.out is not None:
+        raise ParameterError('--out is the folder for --new NAME: leave it out')
     require_place('--json', options.json)
     settings = KnownSettings(scenario_of(options, options.overrides))
     print(f'{PROGRAM}: trying {options.controller}', file=sys.stderr, flush=True)

@@ -80,7 +80,7 @@ def write_design(
     write_design_charts(path.parent, designed, specifications)
     write_text(str(path), designed.to_yaml())
     if options.json != STDOUT:
-        run_it = ('ddct', 'bringup', '--controller', str(path), '--out', f'runs/{designed.name}')
+        run_it = ('ddct', 'compare', '--controllers', str(path), '--out', f'runs/{designed.name}')
         print(f'Run it: {shlex.join(run_it)}')
 
 

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Program `design`: from specifications to a verified controller and its margins."""
+"""Program `design`: a controller from specifications, and margins for any car."""
 
 from ddct_controllers import workflows
 from ddct_plant.program.command_line import LateSubcommand, ProgramParser, run_subcommands
@@ -37,7 +37,7 @@ examples:
   ddct design margins --controller all                     the sampled loop with hold and delay
   ddct design plant --export plant.m                       the plant's equations and numbers
 
-Each workflow has its own --help. The thesis's numbers, figures and studies: reproduce."""
+Each workflow has its own --help. The thesis's numbers, figures and studies: ddct thesis."""
 
 
 def main(argv: list[str] | None = None) -> int:

@@ -36,7 +36,7 @@ from ddct_plant.program.command_line import complain
 _DESCRIPTION = """\
 Go through Chapter 3 of the thesis: from specifications to weights, then synthesis, cleaning and
 discretisation, and what the closed loop does. --out writes the controller as DIR/NAME.yaml,
-which `bringup` and `compare` take, and charts. It is written only if its sampled loop meets the
+which `compare` takes, and charts. It is written only if its sampled loop meets the
 specifications and is stable at every corner of the driveline, or with --write-anyway.
 --weights thesis takes K and w_2 as printed. fitted takes those that lead to nearly the printed
 Hinf1. sampled takes the printed ones and one on the torque, with hold and delay in the plant;

@@ -30,11 +30,11 @@ from ddct_plant.models.driveline_model import engine_to_slip
 
 _DESCRIPTION = """\
 With --rise-time and --overshoot: find a controller that meets them in the sampled loop. --out
-writes it as DIR/NAME.yaml, which `bringup` and `compare` take as a controller, with its
+writes it as DIR/NAME.yaml, which `compare` takes as a controller, with its
 Nyquist, Nichols and step charts. Without them: go through Chapter 2 of the thesis. This shows
 its specifications translated, the steps from K_c/s to G_c1, G_c2 beside a rule for it, and both
 loops as the thesis judges them, with the delay, and sampled with hold and delay.
-`ddct reproduce numbers` has every number."""
+`ddct thesis numbers` has every number."""
 _EXAMPLES = """\
 examples:
   ddct design loop-shaping

@@ -19,7 +19,7 @@ from ddct_plant.scenario.settings import KnownSettings
 
 _DESCRIPTION = """\
 Write a predictive controller, with its observer and solver, as self-contained C99 for a
-control unit: docs/controllers/files.md. Studies of these controllers: reproduce studies."""
+control unit: docs/controllers/files.md. `ddct thesis studies` has studies of them."""
 _EPILOG = """\
 examples:
   ddct design mpc --export control_unit

@@ -22,7 +22,7 @@ def require_written_as_designed(
     options = ['h-infinity', '--weights', weights, '--name', 'mine', '--out', str(folder)]
     assert main([*options, '--write-anyway']) == 0
     path = folder / 'mine.yaml'
-    assert f'bringup --controller {path}' in capsys.readouterr().out
+    assert f'compare --controllers {path}' in capsys.readouterr().out
     settings = RunSettings(KnownSettings(load_scenario('thesis')))
     built = make_controller(str(path), settings.known).linear_model()
     expected = synthesised_design(f'hinf_{weights}').sampled

@@ -57,7 +57,7 @@ def test_a_design_is_written_with_charts_and_is_a_controller(tmp_path, capsys):
     pytest.importorskip('matplotlib')
     assert main([*OWN, '--name', 'calm', '--out', str(tmp_path / 'new')]) == 0
     path = tmp_path / 'new' / 'calm.yaml'
-    assert f'bringup --controller {path}' in capsys.readouterr().out
+    assert f'compare --controllers {path}' in capsys.readouterr().out
     charts = {
         f'calm_{chart}.{ending}'
         for chart in ('nyquist', 'nichols', 'step')

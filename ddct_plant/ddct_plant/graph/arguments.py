@@ -90,7 +90,7 @@ def node_help(name: str, factory: Callable[[], GraphNode], arguments: Sequence[s
         node.destroy_node()
     finally:
         rclpy.try_shutdown()
-    program = f'ddct {name}'
+    program = f'ddct node {name}'
     return '\n'.join(
         [
             f'usage: {program} [--ros-args -p PARAMETER:=VALUE ...]',

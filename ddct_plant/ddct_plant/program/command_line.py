@@ -24,8 +24,10 @@ from ddct_plant.program.signals import (
     stems_from_interrupt,
 )
 
-_GROUP = 'ddct.programs'
-"""Group of the programs' entry points, which the packages' setup.py declare."""
+_PROGRAMS = 'ddct.programs'
+"""Group of the entry points of what `ddct` starts by its first word."""
+_SCRIPTS = 'ddct.scripts'
+"""Group of the entry points of what `ros2 run` starts: the nodes, and some programs."""
 _USAGE = 2
 """Exit code after invalid options, as in argparse."""
 _INTERRUPTED = 130
@@ -58,7 +60,7 @@ def main() -> int:
     name = Path(sys.argv[0]).name
 
     def start(_argv: list[str]) -> int:
-        known = programs()
+        known = scripts()
         if name not in known:
             raise DdctError(f'no program has this name: choose from {", ".join(sorted(known))}')
         return load_program(known[name])()
@@ -67,8 +69,17 @@ def main() -> int:
 
 
 def programs() -> dict[str, EntryPoint]:
-    """Return the programs by name; of two with the same name the first on Python's path."""
-    return {point.name: point for point in reversed(tuple(entry_points(group=_GROUP)))}
+    """Return the programs of `ddct` by name; of two alike the first on Python's path."""
+    return _points(_PROGRAMS)
+
+
+def scripts() -> dict[str, EntryPoint]:
+    """Return what `ros2 run` starts, by name; of two alike the first on Python's path."""
+    return _points(_SCRIPTS)
+
+
+def _points(group: str) -> dict[str, EntryPoint]:
+    return {point.name: point for point in reversed(tuple(entry_points(group=group)))}
 
 
 def load_program(point: EntryPoint) -> Callable[[], int]:

@@ -24,12 +24,12 @@ HEADERS = ('node', 'what is missing', 'for longer than', 'what it does', 'it end
 
 
 def missing_tables() -> Mapping[str, TextTable]:
-    """Return the tables of both modes, and that of what `bringup` sees."""
+    """Return the tables of both modes, and that of what `compare` sees."""
     return {
         'realtime': TextTable('', HEADERS, _realtime()),
         'lockstep': TextTable('', HEADERS, _lockstep()),
-        'bringup': TextTable(
-            '', ('what is missing', 'for longer than', 'what follows'), _bringup()
+        'compare': TextTable(
+            '', ('what is missing', 'for longer than', 'what follows'), _compare()
         ),
     }
 
@@ -133,7 +133,7 @@ def _lockstep() -> list[tuple[str, ...]]:
     ]
 
 
-def _bringup() -> list[tuple[str, ...]]:
+def _compare() -> list[tuple[str, ...]]:
     return [
         ('a node: it was killed, or ended', 'at once', 'the run ends with its name and last line'),
         (

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""`check-controller` finds no fault with any packaged controller."""
+"""`ddct check` finds no fault with any packaged controller."""
 
 import pytest
 

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The package of `new-controller` is installed by the printed commands, and its tests pass."""
+"""The package of `ddct check --new` is installed by the printed commands, and its tests pass."""
 
 import shlex
 import subprocess
@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from waiting import WITHIN_S
 
-from ddct_controllers.template import new_controller
+from ddct_controllers.check import program as check
 
 
 def python(site: Path, code: str) -> str:
@@ -35,8 +35,8 @@ def test_the_printed_commands_install_check_and_run_the_package_and_its_tests_pa
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     folder, site = tmp_path / 'my own slip', tmp_path / 'site'
-    assert new_controller.main(['my_slip', '--out', str(folder)]) == 0
-    *_, command, check, compare = capfd.readouterr().out.splitlines()
+    assert check.main(['--new', 'my_slip', '--out', str(folder)]) == 0
+    *_, command, tried, compare = capfd.readouterr().out.splitlines()
     readme = (folder / 'README.md').read_text(encoding='utf-8')
     assert f'    {command.strip()}\n' in readme
     assert f"-m pytest '{folder}'`" in readme
@@ -46,7 +46,7 @@ def test_the_printed_commands_install_check_and_run_the_package_and_its_tests_pa
         timeout=3 * WITHIN_S,
         check=True,
     )
-    for line in (check, compare):
+    for line in (tried, compare):
         words = f'import sys\nsys.argv = {shlex.split(line)!r}\n'
         python(site, f'{words}from ddct_bringup.programs.ddct import main\nassert not main()')
     assert list(tmp_path.glob('runs/my_slip/my_slip/*.mcap'))

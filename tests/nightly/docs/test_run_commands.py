@@ -15,7 +15,7 @@ from support.documented_commands import (
 )
 
 BLOCKS = [block for block in SHELL_BLOCKS if in_this_process(block)]
-_LEAVE_NOTHING = ('ddct reproduce ', 'ddct design ')
+_LEAVE_NOTHING = ('ddct thesis ', 'ddct design ')
 """First words of commands that read nothing that others write."""
 DONE: set[str] = set()
 """Such commands that have been run, with another page."""

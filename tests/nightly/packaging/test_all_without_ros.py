@@ -13,7 +13,7 @@ from support.without_ros import fill_site, python
 
 ALL = """
 import contextlib, importlib, io, json, pkgutil, sys
-from ddct_bringup.programs import compare, reproduce, score
+from ddct_bringup.programs import compare, thesis, score
 from ddct_controllers.workflows import design_program
 from ddct_bringup.identification import identify
 codes, refused = {}, {}
@@ -22,7 +22,7 @@ for name, main, arguments in (
     ('score', score.main, 'runs --json scores.json'),
     ('identify', identify.main, ''),
     ('design', design_program.main, 'margins --controller pi'),
-    ('reproduce', reproduce.main, 'numbers --help'),
+    ('thesis', thesis.main, 'numbers --help'),
 ):
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
         try:

@@ -27,7 +27,7 @@ def test_a_graph_names_the_controller_whose_status_is_no_text(
     assert run.wait() == 1
     words = "controller 'bad_status': its status at step 60 is (('iterations', 3),)"
     place = f'{SUPPORT}/broken_controllers.py line '
-    assert_one_line(run.errors(), 'ddct bringup', 'node controller', words, place)
+    assert_one_line(run.errors(), 'bringup', 'node controller', words, place)
 
 
 @pytest.mark.usefixtures('broken')

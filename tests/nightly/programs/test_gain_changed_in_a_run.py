@@ -56,7 +56,7 @@ def test_a_gain_changed_in_a_run_is_named_by_every_program(
     (change,) = read_bag(out / 'pi').gain_changes
     assert 70 < change.step < 2000
     line = f'{CHANGED}{change.time_s:g} s'
-    assert f'ddct bringup: {line}' in bringup.errors()
+    assert f'bringup: {line}' in bringup.errors()
 
     assert score.main([str(out), '--json', str(tmp_path / 'scores.json')]) == 0
     assert f'pi: {line}' in capfd.readouterr().out

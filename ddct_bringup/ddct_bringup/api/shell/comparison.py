@@ -21,6 +21,7 @@ from ddct_bringup.scores.document import scores_document
 from ddct_bringup.scores.floors import with_floors
 from ddct_bringup.scores.scored_recording import ScoredRecording, run_and_score, score_any_bag
 from ddct_bringup.scores.scored_run import ScoredRun
+from ddct_bringup.scores.validity import realtime_summary
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_plant.base.errors import DdctError
@@ -42,7 +43,7 @@ class Comparer:
     execute: Callable[[RunPlan, Path, str], Recording | None]
     """Execute a plan into a folder; the text says which of the runs it is."""
     complain: Callable[[str], None]
-    """Take a line on a failed run, or on a controller without margins."""
+    """Take a line on a failed run, on one in real time, or on a controller without margins."""
     show: Callable[[Sequence[ScoredRun]], None]
     """Take the scores of all runs as soon as they are there, also if none is valid."""
 
@@ -110,7 +111,10 @@ def _run(
         return comparer.execute(plan, folder, label)
 
     try:
-        return run_and_score(plan, bag, limits, execute)
+        scored = run_and_score(plan, bag, limits, execute)
+        if scored.recording and not scored.recording.facts.lockstep:
+            comparer.complain(f'{plan.name}: {realtime_summary(scored.recording)}')
+        return scored
     except DdctError as error:
         reason = str(error)
     reason = reason.replace(f'{bag}/', '')  # the folder gets its final name later

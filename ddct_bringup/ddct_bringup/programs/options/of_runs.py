@@ -3,10 +3,13 @@
 """Options that several programs have, and their values as arguments of the Python interface."""
 
 import argparse
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from ddct_bringup.api import shell
+from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.choices.command_line import (
     add_case_option,
     add_option,
@@ -108,6 +111,38 @@ def add_columns_option(parser: argparse.ArgumentParser) -> None:
         metavar='FILE',
         help='column map of a log: which column holds which quantity',
     )
+
+
+def add_live_option(parser: argparse.ArgumentParser) -> None:
+    """Add the option --live to a parser; `execution` reads it."""
+    parser.add_argument(
+        '--live',
+        nargs='?',
+        type=int,
+        const=DEFAULT_PORT,
+        metavar='PORT',
+        help=f'let Foxglove watch; the run waits for it; PORT is {DEFAULT_PORT} unless given',
+    )
+
+
+def execution(options: argparse.Namespace) -> 'Callable[..., shell.Recording | None]':
+    """
+    Return how a run is executed: as `run_with_progress`, and shown in Foxglove with --live.
+
+    Raise ParameterError for --live in another layout than a process per node.
+    """
+    if options.live is None:
+        return shell.run_with_progress
+    if options.layout != 'processes':
+        raise ParameterError(f'--live shows a process per node: drop it or --{options.layout}')
+    return partial(_execute, options.live)
+
+
+def _execute(
+    port: int, plan: 'shell.RunPlan', folder: Path, label: str = ''
+) -> 'shell.Recording | None':
+    with shell.live_view(port, plan.names) as view:
+        return shell.run_with_progress(plan, folder, label, view)
 
 
 def settings_given(options: argparse.Namespace) -> dict[str, Any]:

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Subcommand `reproduce figures`: the thesis's figures as pictures with a gallery."""
+"""Subcommand `thesis figures`: the thesis's figures as pictures with a gallery."""
 
 import argparse
 from collections.abc import Mapping, Sequence
@@ -43,14 +43,14 @@ page shows just those. --controllers draws further controllers into each figure 
 2.11 to 2.28, 3.10 to 3.19, 4.3 to 4.8 and 5.1."""
 _EXAMPLES = """\
 examples:
-  ddct reproduce figures --out figures
-  ddct reproduce figures --out figures --only 2.10,3.5 --overwrite
-  ddct reproduce figures --out figures --only 2.26 --controllers mpc3,mine.yaml --overwrite"""
+  ddct thesis figures --out figures
+  ddct thesis figures --out figures --only 2.10,3.5 --overwrite
+  ddct thesis figures --out figures --only 2.26 --controllers mpc3,mine.yaml --overwrite"""
 _PAGE = 'index.html'
 
 
 def add_parser(subparsers: Any) -> None:
-    """Add `figures` to the subcommands of `reproduce`."""
+    """Add `figures` to the subcommands of `thesis`."""
     parser = subparsers.add_parser(
         'figures',
         description=_DESCRIPTION,
@@ -84,7 +84,7 @@ def run(options: argparse.Namespace) -> int:
     _make_room(folder, [*files, folder / _PAGE], options.overwrite)
     drawn: dict[ThesisFigure, str] = {}
     for count, figure in enumerate(figures, start=1):
-        complain('ddct reproduce figures', f'{count}/{len(figures)} {figure.heading}')
+        complain('ddct thesis figures', f'{count}/{len(figures)} {figure.heading}')
         with chart_style():
             chart, drawn[figure] = figure.draw()
             save_figure(chart, folder, gallery.file_name(figure.number))

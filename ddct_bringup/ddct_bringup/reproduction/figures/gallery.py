@@ -9,7 +9,7 @@ from itertools import groupby
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure, figure_order
 from ddct_controllers.design.drawing.chart_style import INDEXED_SYMBOL
 
-GENERATOR = '<meta name="generator" content="reproduce figures">'
+GENERATOR = '<meta name="generator" content="thesis figures">'
 """Tag of a page written by this program, which it may replace."""
 CHAPTERS = {
     1: 'The transmission and its models',

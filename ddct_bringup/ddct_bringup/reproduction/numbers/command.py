@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Subcommand `reproduce numbers`: comparison of every printed number with a computed one."""
+"""Subcommand `thesis numbers`: comparison of every printed number with a computed one."""
 
 import argparse
 from collections.abc import Callable, Mapping, Sequence
@@ -40,10 +40,10 @@ reproduced, erratum (the thesis's own numbers lead to another value), calibrated
 whose inputs are not printed)."""
 _EPILOG = """\
 examples:
-  ddct reproduce numbers
-  ddct reproduce numbers --json numbers.json
-  ddct reproduce numbers --json -                  as JSON on standard output, alone
-  ddct reproduce numbers --csv numbers.csv         a row per number, for a spreadsheet
+  ddct thesis numbers
+  ddct thesis numbers --json numbers.json
+  ddct thesis numbers --json -                  as JSON on standard output, alone
+  ddct thesis numbers --csv numbers.csv         a row per number, for a spreadsheet
 
 The exit code is 0 when every claim holds. A reproduced number is within its tolerance.
 A calibrated number is too, or is listed as a miss. An erratum differs from the print
@@ -52,7 +52,7 @@ _SHOWN_COMPLAINTS = 3
 
 
 def add_parser(subparsers: Any) -> None:
-    """Add `numbers` to the subcommands of `reproduce`."""
+    """Add `numbers` to the subcommands of `thesis`."""
     parser = subparsers.add_parser(
         'numbers',
         description=_DESCRIPTION,
@@ -68,7 +68,7 @@ def run(options: argparse.Namespace) -> int:
     require_one_for_stdout(options.json, options.csv)
     require_place('--json', options.json)
     require_place('--csv', options.csv)
-    rows = judge(thesis_numbers(), compute(SOURCES, partial(complain, 'ddct reproduce numbers')))
+    rows = judge(thesis_numbers(), compute(SOURCES, partial(complain, 'ddct thesis numbers')))
     numbers = [row.entry for row in rows]
     tables = {name: table.written for name, table in page_tables(rows).items()}
     document = NumbersDocument(numbers, tables)

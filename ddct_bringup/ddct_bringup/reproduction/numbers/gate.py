@@ -57,7 +57,7 @@ class NumberEntry:
 
 @dataclass(frozen=True)
 class NumbersDocument:
-    """Document of `reproduce numbers --json`."""
+    """Document of `thesis numbers --json`."""
 
     numbers: Sequence[NumberEntry]
     tables: Mapping[str, WrittenTable]
@@ -85,7 +85,7 @@ class GateRow:
 
     @property
     def entry(self) -> NumberEntry:
-        """Entry in `ddct reproduce numbers --json`."""
+        """Entry in `ddct thesis numbers --json`."""
         number, value = self.number, self.computed
         return NumberEntry(
             section=number.section,

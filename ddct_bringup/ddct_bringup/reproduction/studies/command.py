@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Subcommand `reproduce studies`: the causes of the predictive controllers' results."""
+"""Subcommand `thesis studies`: the causes of the predictive controllers' results."""
 
 import argparse
 import textwrap
@@ -54,14 +54,14 @@ packaged scenario. Each study is a table, those of the scenarios with a chart.""
 _OF_A_SCENARIO = 'every controller in this scenario, new and worn'
 _EPILOG = """\
 examples:
-  ddct reproduce studies                                every study
-  ddct reproduce studies --study readings               MPC1-3 under the readings of Table 4.1
-  ddct reproduce studies --study wear --json wear.json
-  ddct reproduce studies --study engagements_launch --charts ."""
+  ddct thesis studies                                every study
+  ddct thesis studies --study readings               MPC1-3 under the readings of Table 4.1
+  ddct thesis studies --study wear --json wear.json
+  ddct thesis studies --study engagements_launch --charts ."""
 
 
 def add_parser(subparsers: Any) -> None:
-    """Add `studies` to the subcommands of `reproduce`."""
+    """Add `studies` to the subcommands of `thesis`."""
     parser = subparsers.add_parser(
         'studies',
         description=_DESCRIPTION,
@@ -104,7 +104,7 @@ def run(options: argparse.Namespace) -> int:
         raise DdctError(f'--charts {options.charts}: there is no such folder: make it first')
     studies: dict[str, Study] = {}
     for name in names:
-        complain('ddct reproduce studies', name)
+        complain('ddct thesis studies', name)
         studies[name] = STUDIES[name]()
         if options.json != STDOUT:
             _print(studies[name])

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from ddct_bringup.programs import reproduce
+from ddct_bringup.programs import thesis
 from ddct_bringup.reproduction.figures.command import collect_figures
 from ddct_bringup.reproduction.figures.gallery import gallery_page
 from ddct_bringup.reproduction.figures.h_infinity_figures import H_INFINITY_FIGURES
@@ -183,7 +183,7 @@ def test_symbols_with_an_index_are_typeset():
 
 
 def run_command(*arguments: object) -> int:
-    return reproduce.main(['figures', *map(str, arguments)])
+    return thesis.main(['figures', *map(str, arguments)])
 
 
 @pytest.fixture
@@ -194,7 +194,7 @@ def refusal(capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
         capsys.readouterr()
         assert run_command(*arguments) == 1
         (line,) = capsys.readouterr().err.splitlines()
-        assert line.startswith('ddct reproduce: ')
+        assert line.startswith('ddct thesis: ')
         return line
 
     return run
@@ -210,7 +210,7 @@ def test_command_writes_pictures_and_a_page_that_links_them(tmp_path, capsys):
         assert (tmp_path / 'new' / picture).read_bytes().startswith(b'\x89PNG')
         files |= {picture, picture.replace('.png', '.svg'), picture.replace('.png', '.csv')}
     assert {path.name for path in (tmp_path / 'new').iterdir()} == files
-    assert 'reproduce figures: 2/2 Figure 2.10: ' in capsys.readouterr().err
+    assert 'thesis figures: 2/2 Figure 2.10: ' in capsys.readouterr().err
 
 
 def test_command_draws_a_controller_of_ones_own_into_the_figures_of_runs(tmp_path, capsys):

@@ -1,13 +1,13 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Program `reproduce studies`: the studies, and their printed and written output."""
+"""Program `thesis studies`: the studies, and their printed and written output."""
 
 import json
 
 import numpy as np
 import pytest
 
-from ddct_bringup.programs import reproduce
+from ddct_bringup.programs import thesis
 from ddct_bringup.reproduction.studies import command
 from ddct_bringup.reproduction.studies.command import STUDIES
 from ddct_bringup.reproduction.studies.engagements import Slip, engagement_chart
@@ -26,18 +26,18 @@ def two_studies(monkeypatch):
 
 
 def test_without_options_every_study_is_printed_with_its_remarks(capsys):
-    assert reproduce.main(['studies']) == 0
+    assert thesis.main(['studies']) == 0
     output = capsys.readouterr()
     assert output.out.index('The first') < output.out.index('Lower is better.')
     assert output.out.index('Lower is better.') < output.out.index('The second')
-    progress = ['ddct reproduce studies: first', 'ddct reproduce studies: second']
+    progress = ['ddct thesis studies: first', 'ddct thesis studies: second']
     assert output.err.splitlines() == progress
 
 
 def test_the_help_lists_every_study_with_what_it_is_about(capsys, monkeypatch):
     monkeypatch.setattr(command, 'STUDIES', STUDIES)
     with pytest.raises(SystemExit):
-        reproduce.main(['studies', '--help'])
+        thesis.main(['studies', '--help'])
     listed = capsys.readouterr().out.partition('\nstudies:\n')[2].partition('\nexamples:')[0]
     lines = [line.split(maxsplit=1) for line in listed.splitlines() if line[2:3].strip()]
     assert [name for name, about in lines if about] == list(STUDIES)
@@ -45,7 +45,7 @@ def test_the_help_lists_every_study_with_what_it_is_about(capsys, monkeypatch):
 
 
 def test_json_on_standard_output_has_no_other_text_and_a_mapping_per_row(capsys):
-    assert reproduce.main(['studies', '--study', 'first', '--json', '-']) == 0
+    assert thesis.main(['studies', '--study', 'first', '--json', '-']) == 0
     assert json.loads(capsys.readouterr().out) == {
         'first': {
             'title': 'The first',
@@ -61,7 +61,7 @@ def test_charts_come_as_picture_and_drawing_with_their_data(monkeypatch, tmp_pat
     slips = [Slip('pi', worn, 'engaged', 1, rpm + float(worn)) for worn in ('0', '1', '2')]
     drawn = Study('Drawn', ('name',), [('c',)], draw=lambda: engagement_chart('Drawn', slips))
     monkeypatch.setattr(command, 'STUDIES', {'plain': lambda: SECOND, 'drawn': lambda: drawn})
-    assert reproduce.main(['studies', '--json', '-', '--charts', str(tmp_path)]) == 0
+    assert thesis.main(['studies', '--json', '-', '--charts', str(tmp_path)]) == 0
     files = sorted(file.name for file in tmp_path.iterdir())
     assert files == ['drawn.csv', 'drawn.png', 'drawn.svg']
     data = (tmp_path / 'drawn.csv').read_text(encoding='utf-8').splitlines()
@@ -98,7 +98,7 @@ def test_the_panels_leave_a_margin_around_engaged_runs_and_no_room_for_others():
 
 
 def test_unknown_study_is_refused_before_the_work(capsys):
-    assert reproduce.main(['studies', '--study', 'first', '--study', 'third']) == 1
+    assert thesis.main(['studies', '--study', 'first', '--study', 'third']) == 1
     (error,) = capsys.readouterr().err.splitlines()
-    assert error.startswith('ddct reproduce: ')
+    assert error.startswith('ddct thesis: ')
     assert all(name in error for name in ('third', 'first', 'second'))

@@ -1,11 +1,11 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Program `reproduce`: the thesis's numbers, figures and studies, made again."""
+"""Program `thesis`: the numbers, figures and studies of the thesis, made again."""
 
 from ddct_bringup.api import shell
 from ddct_plant.program.command_line import LateSubcommand, ProgramParser, run_subcommands
 
-PROGRAM = 'ddct reproduce'
+PROGRAM = 'ddct thesis'
 _COMMANDS = {
     'numbers': LateSubcommand("the thesis's numbers beside ours", lambda: shell.numbers_command),
     'figures': LateSubcommand(
@@ -19,9 +19,9 @@ _COMMANDS = {
 _DESCRIPTION = 'Compute what the thesis prints, and hold it against the print.'
 _EPILOG = """\
 examples:
-  ddct reproduce numbers                     every printed number beside ours
-  ddct reproduce figures --out figures       the thesis's figures, drawn again
-  ddct reproduce studies                     what decides how the predictive controllers fare
+  ddct thesis numbers                     every printed number beside ours
+  ddct thesis figures --out figures       the thesis's figures, drawn again
+  ddct thesis studies                     what decides how the predictive controllers fare
 
 Each of them has its own --help."""
 

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Program `new-controller`: write an installable package with a controller to start from."""
+"""Write an installable package with a controller to start from, as `check --new` does."""
 
 import keyword
 import shlex
@@ -14,9 +14,7 @@ from ddct_controllers.from_file.controller_file import require_name
 from ddct_controllers.registry import controller_names
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.output_file import write_text
-from ddct_plant.program.command_line import ProgramParser, run_program
 
-PROGRAM = 'ddct new-controller'
 TEMPLATES = Path(__file__).parent / 'files'
 FILES = {
     'pyproject.toml': 'pyproject.toml.in',
@@ -25,41 +23,24 @@ FILES = {
     'test_{name}.py': 'test_controller.py.in',
 }
 """Templates by the name of the file that is written."""
-_EPILOG = """\
-examples:
-  ddct new-controller my_slip --out my_slip
-
-Then edit my_slip/src/my_slip.py. The commands to install, check and score it are in its README."""
 
 
-def main(argv: list[str] | None = None) -> int:
-    """Run the program and return its exit code."""
-    return run_program(PROGRAM, _write, argv)
+def write_new(name: str, out: Path | None) -> str:
+    """
+    Write the package of a new controller to `out`, or to a folder with its name.
 
-
-def _write(argv: list[str]) -> int:
-    parser = ProgramParser(
-        prog=PROGRAM,
-        description='Write a package with a controller, its entry point, test and README.',
-        epilog=_EPILOG,
-    )
-    parser.add_argument(
-        'name', metavar='NAME', help='of the controller: lower-case letters, digits, underscores'
-    )
-    parser.add_argument(
-        '--out', type=Path, metavar='DIR', help='a folder that is not there yet; default: NAME'
-    )
-    options = parser.parse_args(argv)
-    require_free_name(options.name)
-    folder = (options.out or Path(options.name)).absolute()
-    write_package(options.name, folder)
-    print(
+    Return what to do next, in lines. Raise ParameterError for a name that cannot be used,
+    DdctError for a folder that is taken.
+    """
+    require_free_name(name)
+    folder = (out or Path(name)).absolute()
+    write_package(name, folder)
+    return (
         f'{folder} is written. Next:\n'
         f'  {install_command(str(folder))}\n'
-        f'  ddct check-controller {options.name}\n'
-        f'  ddct compare --controllers pi,{options.name} --headless --out runs/{options.name}'
+        f'  ddct check {name}\n'
+        f'  ddct compare --controllers pi,{name} --headless --out runs/{name}'
     )
-    return 0
 
 
 def require_free_name(name: str) -> None:
@@ -117,7 +98,3 @@ def write_package(name: str, folder: Path) -> None:
     for file, template in FILES.items():
         text = Template((TEMPLATES / template).read_text(encoding='utf-8')).substitute(values)
         write_text(str(folder / file.format(name=name)), text, 'give another --out')
-
-
-if __name__ == '__main__':
-    raise SystemExit(main())
