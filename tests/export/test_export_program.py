@@ -34,7 +34,7 @@ def test_mpc3_is_what_is_exported_by_default(tmp_path, capsys):
     [
         (['--controller', 'pi'], 'pi cannot be exported: it is not a predictive controller'),
         (['--controller', 'nobody'], "unknown controller 'nobody'"),
-        (['--controller', 'mpc_wear'], 'does more than there is in C'),
+        (['--controller', 'mpc_wear'], 'the C has no '),
         (['--set', 'controllers.mpc3.control_steps=40'], 'control_steps is 40, longer than'),
     ],
 )

@@ -89,8 +89,8 @@ class RunInfoCollector:
         pairs = self._received.get(node, {})
         if key not in pairs:
             raise DdctError(
-                f'{RUN_INFO.name} of node {node} has no {key}, which the bag needs: whoever '
-                f'stands in for {node} must publish it',
+                f'{RUN_INFO.name} of node {node} has no {key}, which the bag needs: a node '
+                f'in place of {node} must publish it too',
                 key=key,
             )
         return pairs[key]

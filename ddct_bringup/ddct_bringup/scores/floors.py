@@ -71,8 +71,8 @@ def _over_least(
     periods = scenario.steps - steps_in('control_start_s', scenario.control_start_s)
     if periods > _MOST_PERIODS:
         raise DdctError(
-            f'{periods} periods after control start: with a score the least is computed for up to '
-            f'{_MOST_PERIODS}, use ddct limit'
+            f'the run has {periods} periods after control start, and beside a score the least is '
+            f'computed for up to {_MOST_PERIODS}: use ddct limit'
         )
     start = control_start(settings)
     lock = final_lock_of(trajectory, start.step, rules)

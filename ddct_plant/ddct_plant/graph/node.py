@@ -75,7 +75,7 @@ class GraphNode(Node):
             super().__init__(name, **kwargs)
         except RuntimeError as error:  # so rcl refuses security that the middleware lacks
             reason = ' '.join(str(error).split(', at /')[0].split())
-            raise DdctError(f'{reason}: mend what stands in ROS_*') from error
+            raise DdctError(f'{reason}: mend the environment variables ROS_*') from error
         self._kind = name
         self.steady_time = steady_time or SteadyTime()
         """Time by which the node waits."""

@@ -159,7 +159,7 @@ def _points(section: Mapping[str, Any], group: type[OptionGroup]) -> dict[str, A
     spec = {key: section.get(key, described.default) for key, described in _SOURCE.items()}
     if missing := [f'{prefix}{key}' for key, value in spec.items() if value is REQUIRED]:
         raise ParameterError(
-            f'{prefix}{_FILE} needs {", ".join(missing)} beside it: give all that tells of the '
+            f'{prefix}{_FILE} needs {", ".join(missing)} beside it: give all keys of the '
             'file, such as {csv: pedal.csv, time: t, value: torque, unit: N m}',
             key=missing[0],
         )

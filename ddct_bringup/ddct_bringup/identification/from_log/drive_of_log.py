@@ -177,8 +177,9 @@ class LogDrive:
         worst = int(np.argmax(np.abs(slopes)))
         if abs(slopes[worst]) > STEEPEST_RAD:
             raise DdctError(
-                f'a C_load of {load_torque[worst]:.4g} N m at the wheels is no road for a car of '
-                f'{vehicle.mass_kg:.4g} kg: check units and signs of the torques',
+                f'no road gives a car of {vehicle.mass_kg:.4g} kg a C_load of '
+                f'{load_torque[worst]:.4g} N m at the wheels: check units and signs of '
+                'the torques',
                 place=self.log.path,
             )
         return np.asarray(slopes)

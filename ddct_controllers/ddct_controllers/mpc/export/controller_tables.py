@@ -49,9 +49,8 @@ def exportable(controller: Controller, name: str) -> tuple[MpcController[Observe
     # Classes made from these do something else, which would be missing in C without a word.
     if type(controller) is not MpcController or type(observer) is not Observer:
         raise ParameterError(
-            f'{name} cannot be exported: {type(controller).__name__} with its '
-            f'{type(observer).__name__} does more than there is in C; choose another, '
-            'such as mpc3',
+            f'{name} cannot be exported: the C has no {type(controller).__name__} with '
+            f'{type(observer).__name__}; choose another, such as mpc3',
             key=name,
         )
     return controller, observer

@@ -141,8 +141,8 @@ def _require_effect(
     if weighted.any() and not effective.all():
         name = INPUT_NAMES[int(np.argmin(effective))]
         raise ParameterError(
-            f'MPC: prediction_steps is {settings.prediction_steps}: within them no weighted '
-            f'output feels a move of {name}: choose more',
+            f'MPC: prediction_steps is {settings.prediction_steps}: a move of {name} changes no '
+            'weighted output within them: choose more',
             key='MPC: prediction_steps',
         )
 

@@ -135,7 +135,7 @@ class Part:
         """
         if text.name in above:
             circle = ' -> '.join((*above, text.name))
-            raise ParameterError(f'{BASE} goes in a circle: {circle}', key=BASE)
+            raise ParameterError(f'the files are bases of one another: {circle}', key=BASE)
         content, lines = text.content()
         places = places_of(text.label, lines)
         files = (text.path,) if text.path else ()
