@@ -17,8 +17,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy
 from scipy.linalg import hankel
-from scipy.optimize import brentq
 from typed_loops import DT, driveline, g_a
 
 from ddct_controllers.design.analysis.loops import continuous_loop
@@ -86,7 +86,7 @@ def optimum(zeros: np.ndarray, w_t: Callable[[np.ndarray], np.ndarray], flat: bo
         return float(np.linalg.norm(hankel(negative), 2)) - 1.0
 
     least = math.sqrt((first * second / total).max())
-    return brentq(excess, least * (1.0 + 1e-9), 2.0, xtol=1e-7)
+    return scipy.optimize.brentq(excess, least * (1.0 + 1e-9), 2.0, xtol=1e-7)
 
 
 def rising(damping: float) -> Callable[[np.ndarray], np.ndarray]:

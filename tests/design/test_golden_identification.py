@@ -9,7 +9,7 @@ Nothing here is computed by the product.
 
 import numpy as np
 import pytest
-from scipy.optimize import OptimizeResult, least_squares
+import scipy
 
 from ddct_plant.models.parameters import DrivelineParameters
 
@@ -64,9 +64,11 @@ def residuals(logarithms: np.ndarray, printed: np.ndarray = PRINTED) -> np.ndarr
     return (coefficients(logarithms) - printed) / HALF_UNITS
 
 
-def fit(printed: np.ndarray = PRINTED, left_out: int | None = None) -> OptimizeResult:
+def fit(
+    printed: np.ndarray = PRINTED, left_out: int | None = None
+) -> 'scipy.optimize.OptimizeResult':
     kept = [index for index in range(9) if index != left_out]
-    return least_squares(
+    return scipy.optimize.least_squares(
         lambda x: residuals(x, printed)[kept],
         ROUNDED,
         x_scale='jac',

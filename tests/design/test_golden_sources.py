@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
+import scipy
 from typed_loops import (
     DT,
     corner_plants,
@@ -41,7 +41,7 @@ def test_hinf2_on_paper_and_as_it_runs():
     def radius(wear_gain: float) -> float:
         return np.abs(control.feedback(sampled(hinf2(), wear_gain), 1).poles()).max() - 1.0
 
-    assert brentq(radius, 1.2, 2.0) == pytest.approx(1.4505, abs=0.001)
+    assert scipy.optimize.brentq(radius, 1.2, 2.0) == pytest.approx(1.4505, abs=0.001)
 
 
 @pytest.mark.parametrize(
@@ -112,7 +112,7 @@ def test_highest_crossover_by_arc_tangents():
     """
     zeta, crossing = prototype(0.14)
     left = math.pi / 2.0 - math.atan2(2.0 * zeta, crossing)
-    bound = brentq(
+    bound = scipy.optimize.brentq(
         lambda w: 0.015 * w + 2.0 * math.atan2(161.3 * w, 31340.0 - w**2) - left, 1.0, 100.0
     )
     assert bound == pytest.approx(24.5, abs=0.05)

@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 from fuzz.edits import KINDS, Edit, edited
 from fuzz.loop import FOUND, bounded_time, inputs_in
 from fuzz.reader import Reader
-from fuzz.readers import readers
 
 pytestmark = pytest.mark.slow
 
@@ -34,6 +33,8 @@ EDITS = st.lists(
 @pytest.fixture(scope='module')
 def known(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Reader]:
     """Return all readers by name."""
+    from fuzz.readers import readers
+
     return readers(tmp_path_factory.mktemp('readers'))
 
 

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import setuptools
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
@@ -20,6 +19,8 @@ ROS = {
 
 def setup_of(package: str) -> dict[str, Any]:
     """Return what a package's setup.py hands to setuptools."""
+    import setuptools
+
     given: dict[str, Any] = {}
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(setuptools, 'setup', lambda **options: given.update(options))

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.integrate import solve_ivp
+import scipy
 
 TRUE = {
     'engine_inertia': 0.18,
@@ -92,7 +92,7 @@ def _solved(seed: int, corners_s: tuple[float, float] = (0.0, 0.0)) -> tuple[Any
 
     start = [190.0, 150.0, 150.0 / p['total_ratio'], 0.02]
     span, tight = (0.0, LASTS_S + STEP_S), {'rtol': 1e-8, 'atol': 1e-8, 'max_step': 0.01}
-    done = solve_ivp(motion, span, start, 'RK45', dense_output=True, **tight)
+    done = scipy.integrate.solve_ivp(motion, span, start, 'RK45', dense_output=True, **tight)
     return engine_torque, clutch_torque, done.sol, motion
 
 

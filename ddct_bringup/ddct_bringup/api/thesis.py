@@ -6,8 +6,6 @@ from collections.abc import Iterable
 from dataclasses import asdict
 from typing import Any, NamedTuple
 
-import pandas
-
 from ddct_bringup.api.result import Run, as_runs
 from ddct_bringup.reproduction.numbers.command import SOURCES, compute, require_all
 from ddct_bringup.reproduction.numbers.gate import OUTCOMES, judge
@@ -47,6 +45,8 @@ def thesis_numbers() -> ThesisNumbers:
     The outcomes are those of docs/thesis/reproducing.md. Raise DdctError when a claim of that
     page does not hold.
     """
+    import pandas
+
     rows = judge(listed_numbers(), compute(SOURCES))
     require_all(rows)
     table = pandas.DataFrame([{**to_json(row.entry), 'outcome': row.outcome} for row in rows])
@@ -67,8 +67,11 @@ def beside_thesis(runs: Run | Iterable[Run]) -> Any:
     the metrics are None for a run without a row in the table, or of other conditions than the
     thesis's.
     """
+    import pandas
+
     shown = as_runs(runs)
-    return pandas.DataFrame([_row(each) for each in shown], index=_labels(shown))
+    names = pandas.Index([each.controller for each in shown], name='controller')
+    return pandas.DataFrame([_row(each) for each in shown], index=names)
 
 
 def table_5_2(scenario: str = 'thesis') -> Any:
@@ -78,13 +81,11 @@ def table_5_2(scenario: str = 'thesis') -> Any:
     A row per wear gain and controller has the values, the state, our ratings, the printed ones,
     and whether our runs confirm these. Raise ParameterError for another scenario.
     """
+    import pandas
+
     require_known([scenario], SCENARIOS, 'scenario')
     rows = [asdict(row) for gain in WORN for row in rated_rows(scenario, gain)]
     return pandas.DataFrame(rows).set_index(['wear_gain', 'controller'])
-
-
-def _labels(runs: list[Run]) -> Any:
-    return pandas.Index([each.controller for each in runs], name='controller')
 
 
 def _row(run: Run) -> dict[str, object]:

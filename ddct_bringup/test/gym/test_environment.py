@@ -7,21 +7,21 @@ from typing import Any
 
 import numpy as np
 import pytest
+from extras import needs
 from refusals import refused
 
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers.policy import PolicyController, observed_names
 from ddct_plant.base.errors import DdctError, ParameterError
 
-gymnasium = pytest.importorskip(
-    'gymnasium', reason='Gymnasium, an optional extra, is absent: EXTRAS=gym'
-)
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, needs('gymnasium')]
 SHORT = {'duration_s': 1.3}
 
 
 def made(**options: Any) -> Any:
     """Return the environment without the wrappers that check each step."""
+    import gymnasium
+
     return gymnasium.make('ddct_bringup.gym:ddct/Launch-v0', **options).unwrapped
 
 

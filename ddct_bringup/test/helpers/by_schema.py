@@ -16,7 +16,7 @@ from ddct_bringup.schemas import DOCUMENTS
 @cache
 def _validator(name: str) -> Any:
     """Return the validator of a schema, which is valid."""
-    jsonschema = pytest.importorskip('jsonschema', reason='make .venv/.test')
+    jsonschema = pytest.importorskip('jsonschema', reason='it is not installed')
     schema = DOCUMENTS[name].schema
     jsonschema.Draft202012Validator.check_schema(schema)
     return jsonschema.Draft202012Validator(schema)

@@ -3,7 +3,7 @@
 """The closed loop again, its plant integrated by scipy: an independent source of figures."""
 
 import numpy as np
-from scipy.integrate import solve_ivp
+import scipy
 
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.interface import Measurement
@@ -58,7 +58,7 @@ def tight_tolerance_run(settings: RunSettings, name: str) -> dict[str, np.ndarra
             driveline = plant.a @ x[:4] + plant.b @ [c_m, c_f, c_load]
             return np.concatenate([driveline, filter_.a @ x[4:] + filter_.b[:, 0] * held])
 
-        solution = solve_ivp(
+        solution = scipy.integrate.solve_ivp(
             derivative, (0.0, 0.01), state, method='DOP853', rtol=1e-10, atol=1e-10
         )
         state, delayed = solution.y[:, -1], max(request.torque, 0.0)

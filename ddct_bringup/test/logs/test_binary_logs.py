@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy
 from refusals import refused
-from scipy.io import savemat
 
 from ddct_bringup.logs.columns import ColumnMap, LogColumn
 from ddct_bringup.logs.log import read_log
@@ -23,7 +23,7 @@ TIMES = np.arange(5) * 0.01
 def written(folder: Path, speeds: np.ndarray) -> Path:
     """Write a MAT file with a structure of two vectors, a scalar and a text."""
     log = {'t': TIMES[:, None], 'n': speeds[:, None], 'driver': 'A', 'gear': 1.0}
-    savemat(folder / 'drive.mat', {'log': log})
+    scipy.io.savemat(folder / 'drive.mat', {'log': log})
     return folder / 'drive.mat'
 
 

@@ -66,17 +66,14 @@ def test_the_best_of_equal_trials_is_the_first() -> None:
 
 
 @pytest.mark.parametrize(
-    ('trials', 'words'),
+    ('row', 'words'),
     [
+        ({'valid': False, 'reason': 'it fell over'}, 'it fell over'),
         (
-            [trial(0, 1.0, 1.0, status=INFEASIBLE, valid=False, reason='it fell over')],
-            'it fell over',
-        ),
-        (
-            [trial(0, 1.0, 1.0, status=INFEASIBLE, state='stalled')],
+            {'state': 'stalled'},
             'engaged at least 0.9; the nearest trial has engaged 0 for engaged at least 0.9',
         ),
     ],
 )
-def test_without_a_front_the_reason_is_named(trials: list[Trial], words: str) -> None:
-    assert words in why_no_front(trials, SPEC)
+def test_without_a_front_the_reason_is_named(row: dict[str, Any], words: str) -> None:
+    assert words in why_no_front([trial(0, 1.0, 1.0, status=INFEASIBLE, **row)], SPEC)

@@ -5,12 +5,13 @@
 import numpy as np
 import pyarrow as pa
 import pytest
+from extras import needs
 from small_tuning import tuning
 
 from ddct_bringup.tuning.study import FEWEST, TuningStudy
 from ddct_bringup.tuning.trial import Trial
 
-pytest.importorskip('optuna', reason='an extra')
+pytestmark = needs('optuna')
 SPEC = tuning().spec
 GOAL = SPEC.objectives[0]
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pyarrow as pa
 import pytest
+from extras import needs
 from refusals import refused
 from small_tuning import tuning
 
@@ -17,7 +18,7 @@ from ddct_bringup.tuning.study import BATCH, JOURNAL, TuningStudy, read_trials
 from ddct_bringup.tuning.trial import DOMINATED, FEASIBLE, INFEASIBLE, Trial
 from ddct_plant.base.errors import DdctError
 
-pytest.importorskip('optuna', reason='an extra')
+pytestmark = needs('optuna')
 LIMIT = 0.2
 """Proportional gain above which runs break a constraint; a large gain is always better."""
 

@@ -5,10 +5,10 @@
 from dataclasses import replace
 from typing import Any
 
-import matplotlib
 import numpy as np
 import pyarrow as pa
 import pytest
+from extras import needs
 from small_tuning import tuning
 
 from ddct_bringup.documents.chart import Chart, Line, Marks, legend
@@ -24,7 +24,7 @@ from ddct_bringup.tuning.result import (
 from ddct_bringup.tuning.study import TuningStudy
 from ddct_bringup.tuning.trial import Trial
 
-pytest.importorskip('optuna', reason='an extra')
+pytestmark = needs('optuna')
 SPEC = tuning().spec
 TIME, DEVIATION = (
     GoalEntry(goal.name, goal.title, goal.quantity.unit, 'g', goal.sense, None)
@@ -126,6 +126,8 @@ def test_progress_is_the_volume_between_the_front_and_the_worst_values(study: An
 
 
 def test_progress_keeps_the_backend_of_matplotlib(study: Any) -> None:
+    import matplotlib
+
     backend = matplotlib.get_backend()
     matplotlib.use('svg')
     try:

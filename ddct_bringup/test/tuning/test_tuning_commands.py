@@ -6,14 +6,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from extras import needs
 from printed_commands import run_printed
 from small_tuning import leave_out_pictures, made_tuning
 from tuning_pages import ENGAGED, FILE, VARIED, commands_of, compared_settings
 
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
 
-pytestmark = pytest.mark.slow
-pytest.importorskip('optuna', reason='Optuna, an optional extra, is absent: EXTRAS=tune')
+pytestmark = [pytest.mark.slow, needs('optuna')]
 SENSORS = {'engine_speed': {'noise_rad_s': 1e-7, 'delay_s': 0.01}}
 
 

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Normalising serialised messages changes exactly the bytes that carry no value."""
 
+from functools import cache
+
 import pytest
 from mcap_ros2._dynamic import generate_dynamic, serialize_dynamic
 from refusals import refused
@@ -70,14 +72,20 @@ int8 NO=-1
 int8 status
 uint16 service
 """
-STORE = get_typestore(Stores.ROS2_JAZZY)
-STORE.register(get_types_from_msg(FIX, 'made_msgs/msg/Fix'))
+
+
+@cache
+def store():
+    """Return the types of ROS, and one that is made for the tests."""
+    found = get_typestore(Stores.ROS2_JAZZY)
+    found.register(get_types_from_msg(FIX, 'made_msgs/msg/Fix'))
+    return found
 
 
 @pytest.fixture(params=MESSAGES)
 def case(request):
     """Return the type name, a serialiser's bytes and a decoder."""
-    definition = definition_in(STORE, request.param)
+    definition = definition_in(store(), request.param)
     serialise = serialize_dynamic(request.param, definition.schema_text)[request.param]
     decode = generate_dynamic(request.param, definition.schema_text)[request.param]
     return definition, serialise(MESSAGES[request.param]), decode

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import pytest
+from extras import needs
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.files.json_records import Inline, from_json, to_json
 from ddct_plant.files.json_schema import json_schema
 
-jsonschema = pytest.importorskip('jsonschema', reason='make .venv/.test')
+pytestmark = needs('jsonschema')
 
 
 @dataclass(frozen=True)
@@ -54,11 +55,15 @@ SCHEMA = json_schema(Tree, 'a tree', {'content': Mapping[str, list[int]]})
 
 def faults(document: Any) -> list[str]:
     """Return the places at which a document is not as the schema."""
+    import jsonschema
+
     found = jsonschema.Draft202012Validator(SCHEMA).iter_errors(document)
     return sorted(each.json_path for each in found)
 
 
 def test_a_schema_is_valid_and_allows_what_is_written() -> None:
+    import jsonschema
+
     jsonschema.Draft202012Validator.check_schema(SCHEMA)
     document = to_json(TREE)
     assert faults(document) == []

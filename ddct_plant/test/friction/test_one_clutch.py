@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy
 from refusals import refused
-from scipy.integrate import solve_ivp
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.friction.driveline import FrictionDriveline
@@ -133,7 +133,9 @@ def test_the_event_at_slip_zero_has_the_slip_acceleration_just_before_it(engine,
     at_zero: Any = slip
     at_zero.terminal = True
     at = start.states
-    found = solve_ivp(slope, (0.0, 0.01), at, events=at_zero, rtol=1e-12, atol=1e-12)
+    found = scipy.integrate.solve_ivp(
+        slope, (0.0, 0.01), at, events=at_zero, rtol=1e-12, atol=1e-12
+    )
     events = driveline.outputs().phase_events
     assert events is not None
     event = events[0]

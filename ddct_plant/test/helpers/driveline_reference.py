@@ -7,9 +7,8 @@ from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
+import scipy
 from random_drivelines import INTERVAL_S, INTERVALS, FrictionEvent, Motion, RandomDriveline
-from scipy.integrate import solve_ivp
-from scipy.optimize import brentq, minimize_scalar
 
 Signs = tuple[int, ...]
 AHEAD_S = 1e-7
@@ -132,7 +131,7 @@ class Reference:
         constant = mode.rate[:, count:] @ self._inputs
         rising = mode.rate[:, count:] @ self._slopes
         a = np.ascontiguousarray(mode.rate[:, :count])
-        solution = solve_ivp(
+        solution = scipy.integrate.solve_ivp(
             lambda time, state: a @ state + (constant + rising * time),
             (start, INTERVAL_S),
             self._state,
@@ -186,7 +185,7 @@ class Reference:
         )
         for place in inner[turns]:
             low, high = times[place - 1], times[place + 1]
-            least = minimize_scalar(
+            least = scipy.optimize.minimize_scalar(
                 value, bounds=(low, high), method='bounded', options={'xatol': 1e-12}
             )
             self.motion.grazes += int(abs(least.fun) < GRAZE * scale)
@@ -202,7 +201,7 @@ class Reference:
     def _zero(value: Callable[[float], float], low: float, high: float) -> float:
         if value(low) <= 0.0:
             return low
-        return float(brentq(value, low, high, xtol=1e-16, rtol=1e-15))
+        return float(scipy.optimize.brentq(value, low, high, xtol=1e-16, rtol=1e-15))
 
     def _change(self, now: float, element: int) -> None:
         """Go over to the mode that holds just after an event of an element."""

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy
 from modes import mode_at
-from scipy.optimize import brentq
 
 from ddct_plant.hybrid.friction_system import FrictionSystem
 from ddct_plant.hybrid.integrator import HybridIntegrator
@@ -52,7 +52,7 @@ def carried(start: float, end: float) -> float:
 
 
 def root(function: Callable[[float], float], low: float, high: float) -> float:
-    return brentq(function, low, high, xtol=1e-15, rtol=1e-15)
+    return scipy.optimize.brentq(function, low, high, xtol=1e-15, rtol=1e-15)
 
 
 def closed_form() -> tuple[dict[tuple[int, str], list[float]], tuple[float, float]]:

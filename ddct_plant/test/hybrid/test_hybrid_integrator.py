@@ -6,10 +6,10 @@ from itertools import pairwise, product
 
 import numpy as np
 import pytest
+import scipy
 from modes import mode_at
 from refusals import refused
 from samples import sampled
-from scipy.integrate import solve_ivp
 
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.hybrid.friction_system import FrictionSystem
@@ -169,7 +169,7 @@ def test_a_random_system_moves_as_scipy_integrates_it(seed):
                     friction = sign * c if sign else held_torque(system, x, torque)
                     return system.a @ x + system.b[:, 0] * torque + system.g[:, 0] * friction
 
-                solution = solve_ivp(
+                solution = scipy.integrate.solve_ivp(
                     derivative, (time_s, end_s), expected, 'DOP853', rtol=1e-12, atol=1e-13
                 )
                 expected = solution.y[:, -1]

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+import scipy
 from modes import mode_at
-from scipy.integrate import solve_ivp
 
 from ddct_plant.hybrid.friction_system import FrictionSystem
 from ddct_plant.hybrid.integrator import HybridIntegrator
@@ -104,7 +104,7 @@ class Reference:
 
             watched: Any = event
             watched.terminal, watched.direction = True, -1.0
-        done = solve_ivp(
+        done = scipy.integrate.solve_ivp(
             lambda time, now: self._slope(mode, time, now),
             (start, end),
             state,

@@ -4,8 +4,8 @@
 
 import numpy as np
 import pytest
+import scipy
 from refusals import refused
-from scipy.integrate import solve_ivp
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
@@ -179,7 +179,7 @@ def test_piecewise_linear_input_is_integrated_exactly():
     times = np.linspace(0.0, 0.01, 11)
     state = start
     for first in range(10):
-        state = solve_ivp(
+        state = scipy.integrate.solve_ivp(
             lambda t, x: model.a @ x + column * np.interp(t, times, nodes),
             times[first : first + 2],
             state,
@@ -202,7 +202,7 @@ def test_equal_nodes_are_a_held_input():
 def test_outputs_within_a_period_follow_the_differential_equation():
     model = ACTUATOR.to_state_space()
     start = np.array([3.0, -2.0, 5.0, 1.0])
-    solution = solve_ivp(
+    solution = scipy.integrate.solve_ivp(
         lambda t, x: model.a @ x + model.b[:, 0] * 120.0,
         (0.0, 0.01),
         start,

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy
 from refusals import refused
-from scipy.integrate import solve_ivp
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.clutch import FrictionClutch, FrictionParameters
@@ -63,7 +63,7 @@ def test_a_period_is_that_of_the_differential_equations():
     heat, power = ClutchHeat(start), 30_000.0
     for _ in range(100):
         heat.advance(power * 0.01)
-    solution = solve_ivp(
+    solution = scipy.integrate.solve_ivp(
         lambda _, t: rates(start, t, power), (0.0, 1.0), (90.0, 240.0, 40.0), rtol=1e-11, atol=1e-9
     )
     assert temperatures_c(heat) == pytest.approx(solution.y[:, -1], rel=1e-8)

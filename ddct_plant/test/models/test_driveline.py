@@ -4,7 +4,7 @@
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
+import scipy
 
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.linear_driveline import Driveline
@@ -34,7 +34,9 @@ def integrated(engine: float, load: float, nodes: np.ndarray, state: np.ndarray)
     # Millisecond by millisecond, so that no step straddles a bend of the clutch torque.
     for part in range(10):
         span = (0.001 * part, 0.001 * (part + 1))
-        solution = solve_ivp(derivative, span, state, method='DOP853', rtol=1e-12, atol=1e-12)
+        solution = scipy.integrate.solve_ivp(
+            derivative, span, state, method='DOP853', rtol=1e-12, atol=1e-12
+        )
         state = solution.y[:, -1]
     return state
 
@@ -87,7 +89,7 @@ def test_acceleration_integrates_to_speed():
     driveline.step(200.0, 60.0, torques)
     after = driveline.outputs()
     state = np.array([*before.joint_speed[:3], before.joint_position[3]])
-    half = solve_ivp(
+    half = scipy.integrate.solve_ivp(
         lambda _, x: model.a @ x + model.b @ [200.0, 175.0, 60.0],
         (0.0, 0.005),
         state,

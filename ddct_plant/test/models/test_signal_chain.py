@@ -4,9 +4,9 @@
 
 import numpy as np
 import pytest
+import scipy
 from other_actuators import ACTUATORS
 from refusals import refused
-from scipy.integrate import solve_ivp
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.actuator import Actuator, ActuatorParameters
@@ -87,7 +87,7 @@ def integrated(held_n_m, delay_ms=0, factor=1.0):
     a, b = factor * printed.a, factor * printed.b[:, 0]
     state, torques = np.zeros(len(a)), [0.0]
     for held in [*[0.0] * delay_ms, *np.repeat(held_n_m, 10)][: 10 * len(held_n_m)]:
-        solution = solve_ivp(
+        solution = scipy.integrate.solve_ivp(
             lambda _, x, held=held: a @ x + b * held,
             (0.0, 0.001),
             state,

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy
 from samples import sampled
-from scipy.integrate import solve_ivp
 from shifts import Law, Sample, run, shift_settings
 
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEP_S, SUBSTEPS
@@ -119,7 +119,7 @@ class Independent:
             found.terminal, found.direction = True, -1.0
             return found
 
-        done = solve_ivp(
+        done = scipy.integrate.solve_ivp(
             slope,
             (now, end),
             self.state,

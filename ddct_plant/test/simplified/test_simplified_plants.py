@@ -4,8 +4,8 @@
 
 import numpy as np
 import pytest
+import scipy
 from refusals import refused
-from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from ddct_plant.base.errors import ParameterError
@@ -115,7 +115,7 @@ def test_lti_blocks_without_the_free_response_miss_the_slip_phase(detailed):
 def test_initial_condition_counts_once_in_the_state_space_blocks():
     model = driveline_matrices(PARAMETERS)
     start = np.array([200.0, 150.0, 16.0, 0.02])
-    free = solve_ivp(
+    free = scipy.integrate.solve_ivp(
         lambda t, x: model.a @ x,
         (0.0, 0.3),
         start,

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
+import scipy
 from refusals import refused
-from scipy.optimize import minimize_scalar
 
 from ddct_controllers.design.analysis.loops import continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.margins import loop_margins
@@ -135,7 +135,7 @@ def test_two_printed_norms_of_hinf1_are_those_of_2_45_times_its_gain():
 
 def test_no_gain_of_hinf1_has_the_printed_norm_of_w_t_t():
     """The printed norm is 0.997; 1.041 is the least."""
-    least = minimize_scalar(
+    least = scipy.optimize.minimize_scalar(
         lambda logarithm: printed_norms(math.exp(logarithm)).complementary,
         bounds=(-3.0, 4.0),
         method='bounded',

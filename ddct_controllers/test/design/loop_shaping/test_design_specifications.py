@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 import pytest
+import scipy
 from refusals import refused
-from scipy.optimize import brentq
 
 from ddct_controllers.design.analysis.loops import ContinuousLoop
 from ddct_controllers.design.analysis.margins import loop_margins
@@ -70,7 +70,7 @@ def test_the_formulas_are_those_of_the_prototype(damping):
 
 
 def test_t_r_w_c_of_2_02_belongs_to_a_damping_of_0_63_and_not_to_14_percent():
-    damping = brentq(lambda x: rise_time_crossover_product(x) - 2.02, 0.3, 0.9)
+    damping = scipy.optimize.brentq(lambda x: rise_time_crossover_product(x) - 2.02, 0.3, 0.9)
     assert damping == pytest.approx(0.633, abs=5e-4)
     assert rise_time_crossover_product(CHAPTER_2.damping) == pytest.approx(1.921, abs=5e-4)
     assert CHAPTER_2.crossover_rad_s == pytest.approx(7.69, abs=5e-3)
