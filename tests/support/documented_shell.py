@@ -6,6 +6,7 @@ import os
 import shutil
 import stat
 import subprocess
+from collections.abc import Sequence
 from pathlib import Path
 
 from waiting import WITHIN_S
@@ -33,8 +34,13 @@ def shell_environment(workplace: Path, install: Path) -> dict[str, str]:
 
 def run_block(block: Block, workplace: Path, environment: dict[str, str]) -> None:
     """Run the commands of a block in one shell, whose background nodes end with it."""
+    run_lines(commands_of(block), workplace, environment)
+
+
+def run_lines(commands: Sequence[str], workplace: Path, environment: dict[str, str]) -> None:
+    """Run commands in one shell, whose background nodes end with it."""
     lines = ['set -e', "trap 'kill $(jobs -p) 2>/dev/null || true; wait' EXIT"]
-    script = '\n'.join([*lines, *commands_of(block)])
+    script = '\n'.join([*lines, *commands])
     done = subprocess.run(
         [shutil.which('bash') or 'bash', '-c', script],
         cwd=workplace,
