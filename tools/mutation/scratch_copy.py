@@ -51,8 +51,8 @@ class ScratchCopy:
         """Clone a commit and prepare the environment, minutes."""
         subprocess.run(['git', 'clone', '--quiet', repository, root], check=True)
         subprocess.run(['git', '-C', root, 'checkout', '--quiet', commit], check=True)
-        targets = ['setup', 'fmu', 'gym-extra', 'tune-extra', '.venv/.site', '.venv/.test']
-        subprocess.run(['make', '-C', root, *targets], check=True, stdout=subprocess.DEVNULL)
+        wanted = ['setup', 'EXTRAS=fmu,gym,tune,site,test']
+        subprocess.run(['make', '-C', root, *wanted], check=True, stdout=subprocess.DEVNULL)
         return cls(root)
 
     @contextmanager
