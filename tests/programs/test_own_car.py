@@ -65,12 +65,21 @@ def test_the_car_has_the_log_s_values_the_data_sheet_s_and_says_which(place: Pat
     assert scenario.gearbox.gears == 6
 
 
-def test_it_launches_and_shifts(place: Path) -> None:
+def test_it_launches_and_shifts(place: Path, capfd: pytest.CaptureFixture[str]) -> None:
     for drive in ('launch', 'upshift'):
-        options = ['--controllers', 'least_jerk', '--car', 'car/drive_car.yaml', '--headless']
+        options = [
+            '--controllers',
+            'least_jerk,hinf2',
+            '--car',
+            'car/drive_car.yaml',
+            '--headless',
+        ]
         assert compare.main([*options, '--drive', drive, '--out', drive]) == 0
-        (run,) = json.loads(Path(drive, 'scores.json').read_text())['runs']
+        run, _ = json.loads(Path(drive, 'scores.json').read_text())['runs']
         assert (run['state'], run['scenario']) == ('engaged', f'{drive}_drive_car')
+        assert (
+            'unstable with this car and a new clutch that slips: hinf2;' in capfd.readouterr().err
+        )
 
 
 def test_tuned_and_judged_in_it_the_results_verify_in_another_folder(

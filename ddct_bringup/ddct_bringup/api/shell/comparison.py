@@ -24,6 +24,7 @@ from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.validity import realtime_summary
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.workflows.evidence import frequency_evidence
+from ddct_controllers.workflows.evidence_types import FrequencyEvidence, linear_entries
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import write_json
 
@@ -89,10 +90,22 @@ def compare_into(
             names = ', '.join(plan.name for plan in plans)
             raise NoValidRunError(f'no run is valid ({names}): {folder.left}')
         write_json(str(folder.path / FREQUENCY_FILE), evidence)
+        _say_unstable(evidence, comparer)
         write_report(in_order(runs), str(folder.path / REPORT_FILE), limits, draw)
         finish_manifest(folder.path)
         folder.commit()
     return scored, unusable
+
+
+def _say_unstable(evidence: FrequencyEvidence, comparer: Comparer) -> None:
+    """Name the linear controllers whose loop is unstable with the car of the runs."""
+    entries = linear_entries(evidence)
+    names = [each.controller for each in entries if not each.nominal.margins.stable]
+    if names:
+        comparer.complain(
+            f'unstable with this car and a new clutch that slips: {", ".join(names)}; the report '
+            f'and {FREQUENCY_FILE} have all margins'
+        )
 
 
 def _run(

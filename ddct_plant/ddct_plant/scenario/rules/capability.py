@@ -46,8 +46,8 @@ def _require_engine(scenario: Scenario) -> None:
     if demand > most * _ROUNDING:
         raise ParameterError(
             f'engine.{scenario.engine.quantity} asks for {demand:g} N m, but the engine gives at '
-            f'most {most:g} N m at full load (engine_limits.full_load_n_m): ask for less, or take '
-            'a stronger engine',
+            f'most {most:g} N m at full load (engine_limits.full_load_n_m): ask for less, take a '
+            'stronger engine, or a drive that asks for a share of full load, such as launch',
             key=f'engine.{scenario.engine.quantity}',
         )
 
