@@ -142,7 +142,7 @@ class FrictionDriveline:
             static = [*static_torque, *off_going_static, holding_torque]
         before, inputs = self.now, (engine_torque, load_torque)
         now = self.now = self._engaged.integrator.advance(
-            before.state, before.signs, inputs, kinetic, static
+            before.state, before.signs, inputs, kinetic, static, keep=self._tie_up is not None
         )
         if self._tie_up:
             self._tie_up_work = self._tie_up.work(before, now, inputs, kinetic, static)

@@ -52,7 +52,7 @@ class TieUp:
         Return the work in J between two results of the integrator that are a period apart.
 
         `inputs`, `kinetic` and `static` are those with which the integrator went from one to the
-        other.
+        other; without the courses of `after` it goes there again.
         """
         one, other = _CAPACITIES
         if not (max(static[one]) > 0.0 and max(static[other]) > 0.0):
@@ -62,7 +62,7 @@ class TieUp:
             signs = self._integrator.friction_signs(*given)
             if signs[ON_COMING] * signs[OFF_GOING] > 0:
                 return 0.0
-        courses = self._integrator.courses(*given)
+        courses = after.courses or self._integrator.courses(*given)
         return SUBSTEP_S * sum(self._over(course, part) for course, part in courses)
 
     def _over(self, course: Course, part: float) -> float:

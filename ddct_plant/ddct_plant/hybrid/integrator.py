@@ -112,14 +112,21 @@ class HybridIntegrator:
                 _prepare_alike(members, signs)
 
     def advance(
-        self, state: Values, signs: Signs, inputs: Values, kinetic: Values, static: Values
+        self,
+        state: Values,
+        signs: Signs,
+        inputs: Values,
+        kinetic: Values,
+        static: Values,
+        keep: bool = False,
     ) -> Interval:
         """
         Integrate one interval from `state` (n,) in the mode `signs`.
 
         `inputs` is the flat list of the values of u, `kinetic` and `static` are those of the
-        capacities: one value for a held entry, else one for each node. Raise ParameterError for a
-        capacity that is negative or a static one below the kinetic one.
+        capacities: one value for a held entry, else one for each node. With `keep` an interval in
+        which an event is possible has its courses. Raise ParameterError for a capacity that is
+        negative or a static one below the kinetic one.
         """
         capacities = self.layout.in_force(signs, kinetic, static)
         v = self._values(state, inputs, capacities)
@@ -127,7 +134,7 @@ class HybridIntegrator:
         if interval is not None:
             return interval
         forcing = Forcing(self.layout, inputs, kinetic, static)
-        return _Motion(self, forcing, v[: len(state)], signs).to_the_end()
+        return _Motion(self, forcing, v[: len(state)], signs, keep).to_the_end()
 
     def friction_signs(
         self, state: Values, signs: Signs, inputs: Values, kinetic: Values, static: Values
@@ -151,7 +158,7 @@ class HybridIntegrator:
 
     def courses(
         self, state: Values, signs: Signs, inputs: Values, kinetic: Values, static: Values
-    ) -> list[tuple[Course, float]]:
+    ) -> Sequence[tuple[Course, float]]:
         """
         Return the courses of an interval in their order, and the part of a piece each lasts.
 
@@ -159,9 +166,7 @@ class HybridIntegrator:
         from the polynomials of its courses, which end at nodes and events.
         """
         forcing = Forcing(self.layout, inputs, kinetic, static)
-        motion = _Motion(self, forcing, np.array(state), signs, keep=True)
-        motion.to_the_end()
-        return motion.courses
+        return _Motion(self, forcing, np.array(state), signs, keep=True).to_the_end().courses
 
 
 def _prepare_alike(integrators: Sequence[HybridIntegrator], signs: Signs) -> None:
@@ -187,7 +192,7 @@ class _Motion:
     ) -> None:
         self._integrator, self._forcing = integrator, forcing
         self._keep = keep
-        self.courses: list[tuple[Course, float]] = []
+        self._courses: list[tuple[Course, float]] = []
         """Courses and the part of a piece each lasts; empty unless they are kept."""
         self._state, self._signs = state, signs
         self._events: list[Event] = []
@@ -205,7 +210,12 @@ class _Motion:
         w = self._forcing.at(self._signs, pieces - 1, 1.0)[: flow.inputs]
         friction = flow.force.dot(np.concatenate((self._state, w)))
         return Interval(
-            self._state.tolist(), self._signs, self._events, self._work, friction.tolist()
+            self._state.tolist(),
+            self._signs,
+            self._events,
+            self._work,
+            friction.tolist(),
+            self._courses,
         )
 
     def _pass_pieces(self, first: int) -> int:
@@ -233,7 +243,7 @@ class _Motion:
         flow = self._integrator.flows[self._signs]
         for piece, start in enumerate(starts, first):
             course = flow.course(start, self._forcing.at(self._signs, piece, 0.0))
-            self.courses.append((course, 1.0))
+            self._courses.append((course, 1.0))
 
     def _through_events(self, piece: int) -> None:
         """Integrate to the end of a piece, from event to event."""
@@ -251,7 +261,7 @@ class _Motion:
             for element, work in zip(course.flow.slipping, course.work(part), strict=True):
                 self._work[element] += piece_s * work
             if self._keep:
-                self.courses.append((course, part))
+                self._courses.append((course, part))
             self._state = course.at(part)
             done += part
             if guard is None:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A mode over an interval of equal pieces, as matrix products."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ddct_plant.hybrid.friction_system import IntervalLayout, Signs, Values
-from ddct_plant.hybrid.mode_flow import ModeFlow
+from ddct_plant.hybrid.mode_flow import Course, ModeFlow
 
 BLOCK = 9000
 """Most elements of a matrix in one product: from 9216 OpenBLAS uses threads, with other
@@ -46,6 +46,8 @@ class Interval:
     """Friction work of each element, (N,): the integral of c |s|, not negative."""
     friction: list[float]
     """Friction torques at the end, (N,), left limits."""
+    courses: Sequence[tuple[Course, float]] = ()
+    """Courses in their order, and the part of a piece each lasts; empty unless they were kept."""
 
 
 class ManyEnds(NamedTuple):

@@ -98,10 +98,12 @@ class FrictionDrivelines:
             FrictionDriveline(gears, scenario.vehicle, state)
             for gears, scenario, state in zip(engaged, scenarios, initial, strict=True)
         ]
-        self._motions = Motions(
-            [gears.integrator for gears in engaged], [each.now for each in starts]
-        )
         self._take(engaged)
+        self._motions = Motions(
+            [gears.integrator for gears in engaged],
+            [each.now for each in starts],
+            keep=self._tie_ups is not None,
+        )
         outputs = [each.outputs() for each in starts]
         phases = [[each.clutch_phase for each in outputs]]
         if self._tie_ups:
@@ -195,7 +197,7 @@ class FrictionDrivelines:
         now.advance(forcing, running)
         if self._tie_ups:
             going = running & ~now.failed
-            self._tie_up_work = self._tie_ups.work(*before, forcing, now.events, going)
+            self._tie_up_work = self._tie_ups.work(*before, forcing, now.eventful, going)
         self._phases = np.array(
             [phases_of(now.signs[:, place], each[:, -1]) for place, each in enumerate(kinetics)]
         )
@@ -221,10 +223,10 @@ def events_of(motions: Motions, element: int, step: int) -> RunEvents:
     return {
         run: tuple(
             PhaseEvent(start_s + event.time_s, event.kind, event.slip_acceleration)
-            for event in events
+            for event in period.events
             if event.element == element
         )
-        for run, events in motions.events.items()
+        for run, period in motions.eventful.items()
     }
 
 

@@ -11,7 +11,7 @@ from ddct_bringup.batch.stacks import by_run, distinct, product
 from ddct_plant.base.errors import DdctError
 from ddct_plant.hybrid.friction_system import IntervalLayout, Signs
 from ddct_plant.hybrid.integrator import HybridIntegrator
-from ddct_plant.hybrid.interval_map import Event, Interval, IntervalMap
+from ddct_plant.hybrid.interval_map import Interval, IntervalMap
 
 CLOSE = 1e-9
 """
@@ -49,8 +49,14 @@ class StackedForcing(NamedTuple):
 class Motions:
     """States and modes of R motions, the counterpart of `HybridIntegrator` with its intervals."""
 
-    def __init__(self, integrators: Sequence[HybridIntegrator], start: Sequence[Interval]) -> None:
-        """Take the integrator of each run, and the interval at whose end it starts."""
+    def __init__(
+        self, integrators: Sequence[HybridIntegrator], start: Sequence[Interval], keep: bool
+    ) -> None:
+        """
+        Take the integrator of each run, and the interval at whose end it starts.
+
+        `keep` says whether intervals with events have their courses.
+        """
         self.state = np.array([each.state for each in start])
         """States, (R, n)."""
         self.signs = np.array([each.signs for each in start])
@@ -59,12 +65,12 @@ class Motions:
         """Friction torques at the end of the last period, (R, N), left limits."""
         self.work = np.array([each.work for each in start])
         """Friction work of each element in the last period, (R, N)."""
-        self.events: dict[int, list[Event]] = {}
-        """Events in the last period by the index of their run."""
+        self.eventful: dict[int, Interval] = {}
+        """Last periods with events, by the index of their run."""
         self.failed = np.zeros(len(start), dtype=bool)
         """Runs that could not be integrated, (R,); they are where they were before."""
         self._maps = Maps(integrators)
-        self._integrators = integrators
+        self._integrators, self._keep = integrators, keep
 
     def take(self, integrators: Sequence[HybridIntegrator], state: np.ndarray) -> None:
         """Go on with other systems of the same elements, in the states (R, n)."""
@@ -72,7 +78,7 @@ class Motions:
 
     def advance(self, forcing: StackedForcing, running: np.ndarray) -> None:
         """Integrate one interval of the runs of a mask, (R,)."""
-        self.events = {}
+        self.eventful = {}
         sizes = self._maps.speeds(self.state)
         for signs, runs in by_mode(self.signs, running & ~self.failed):
             for some, at_once, matrix in self._maps.of_mode(signs, runs):
@@ -111,7 +117,7 @@ class Motions:
             static = kinetic
         try:
             end = self._integrators[run].advance(
-                self.state[run].tolist(), signs, inputs, kinetic, static
+                self.state[run].tolist(), signs, inputs, kinetic, static, self._keep
             )
         except DdctError:
             self.failed[run] = True
@@ -119,7 +125,7 @@ class Motions:
         self.state[run], self.signs[run] = end.state, end.signs
         self.friction[run], self.work[run] = end.friction, end.work
         if end.events:
-            self.events[run] = end.events
+            self.eventful[run] = end
             self._maps.prepare_modes_of(run)
 
 

@@ -12,9 +12,10 @@ from ddct_bringup.batch.stacks import product
 from ddct_plant.friction.engagements import OFF_GOING, ON_COMING, EngagedGears
 from ddct_plant.friction.tie_up import TieUp
 from ddct_plant.hybrid.friction_system import Signs
-from ddct_plant.hybrid.interval_map import Event, Interval, IntervalMap
+from ddct_plant.hybrid.interval_map import Interval, IntervalMap
 
 _CLUTCHES = ON_COMING, OFF_GOING
+_NO_EVENTS = Interval([], (), [], [], [])
 
 
 class TieUps:
@@ -43,20 +44,21 @@ class TieUps:
         state: np.ndarray,
         signs: np.ndarray,
         forcing: StackedForcing,
-        events: Mapping[int, list[Event]],
+        eventful: Mapping[int, Interval],
         running: np.ndarray,
     ) -> np.ndarray:
         """
         Return the works in J, (R,), of a period of the runs of a mask, (R,).
 
-        `state` (R, n) and `signs` (R, N) are those at its start, `events` those in it.
+        `state` (R, n) and `signs` (R, N) are those at its start; `eventful` has the periods with
+        events.
         """
         work = np.zeros(len(state))
         pressed = running & self._pressed(ON_COMING, forcing) & self._pressed(OFF_GOING, forcing)
         if not pressed.any():
             return work
         alone = np.zeros(len(state), dtype=bool)
-        alone[list(events)] = True
+        alone[list(eventful)] = True
         alone &= pressed
         for mode, runs in by_mode(signs, pressed & ~alone):
             values = np.hstack([state, forcing.inputs, forcing.in_force(mode, self._layout)])
@@ -66,7 +68,7 @@ class TieUps:
                 one, other = (self._direction(each, mode, runs, values) for each in _CLUTCHES)
                 alone[runs] = (one * other)[runs] <= 0
         for run in np.flatnonzero(alone).tolist():
-            work[run] = self._alone(run, state, signs, forcing, events.get(run, []))
+            work[run] = self._alone(run, state, signs, forcing, eventful.get(run, _NO_EVENTS))
         return work
 
     def _pressed(self, clutch: int, forcing: StackedForcing) -> np.ndarray:
@@ -104,9 +106,8 @@ class TieUps:
         state: np.ndarray,
         signs: np.ndarray,
         forcing: StackedForcing,
-        events: list[Event],
+        after: Interval,
     ) -> float:
         before = Interval(state[run].tolist(), tuple(signs[run].tolist()), [], [], [])
-        after = Interval([], (), events, [], [])
         inputs, kinetic, static = (each[run].tolist() for each in forcing)
         return self._tie_ups[id(self._engaged[run])].work(before, after, inputs, kinetic, static)
