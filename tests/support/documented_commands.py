@@ -47,7 +47,7 @@ NOT_RUN_HERE = {
 }
 """First words of commands and why no test runs them."""
 OF_OWN_CAR = 'mine/data'
-"""What the lines of blocks have that tests/nightly/docs/test_ten_minutes.py runs one after another."""
+"""Part of the blocks whose lines tests/nightly/docs/test_ten_minutes.py runs in succession."""
 SHELL_BLOCKS = [block for block in blocks() if block.is_shell and OF_OWN_CAR not in block.text]
 SOURCE = '. install/setup.bash'
 _TOOLS = ('cp ', 'cc ')
