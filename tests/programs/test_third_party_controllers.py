@@ -82,7 +82,7 @@ def test_a_gain_that_the_example_does_not_take_is_named(
     [
         ['design', 'margins'],
         ['compare', '--headless', '--duration', '0.7', '--out', 'runs'],
-        ['bringup', '--list'],
+        ['compare', '--list'],
     ],
     ids=['margins', 'compare', 'list'],
 )
