@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Program `identify`: the parameters of a car from a log, or from the thesis's functions."""
+"""Program `identify`: the parameters of a car, from a log or from the thesis."""
 
 from ddct_bringup.identification.checks import (
     check_identification,

@@ -5,7 +5,6 @@
 import argparse
 from functools import partial
 from pathlib import Path
-from textwrap import fill
 
 from ddct_bringup.api import shell
 from ddct_bringup.programs.options.of_runs import add_layout_options
@@ -68,8 +67,10 @@ examples:
   ddct campaign show campaigns/wear --figure wear.png    also the distributions of the metrics
 
 Writes summary.json and report.html into DIR.
-{fill(f'P5, P50, P95: {shell.RULES["quantiles"]}', 96)}
-{fill(f'CVaR: {shell.RULES["CVaR"]}', 96)}
+
+P5, P50, P95: {shell.RULES['quantiles']}
+
+CVaR: {shell.RULES['CVaR']}
 """
 
 

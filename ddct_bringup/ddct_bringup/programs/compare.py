@@ -33,12 +33,9 @@ examples:
   ddct compare --controllers pi,ls8,hinf1 --out runs/demo --overwrite
   ddct compare --controllers pi,mine.py --headless --out runs/mine     no ROS, a class in a file
   ddct compare --controllers all --wear-gain 0.7 --set load.slope_rad=0.05 --out runs/worn
-  ddct compare --controllers pi --case vehicle.mass_kg=1700 --out runs/loaded
-                                                   a mass that no controller knows
-  ddct compare --controllers ls8 --mode realtime --live --out runs/live
-                                                   100 Hz on the wall clock, seen in Foxglove
+  ddct compare --controllers pi --case vehicle.mass_kg=1700 --out runs/loaded     unknown mass
+  ddct compare --controllers ls8 --mode realtime --live --out runs/live    seen in Foxglove
   ddct compare --controllers pi --out runs/car --ros-args -r __ns:=/car -r /clock:=/car/clock
-                                                   in a namespace
 
 Writes one bag per controller, DIR/scores.json, DIR/frequency.json with the margins of the
 linear ones, and DIR/report.html, a page that shows all of it. A run that fails does not stop the

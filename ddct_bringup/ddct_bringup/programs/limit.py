@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Program `limit`: compute the least that any controller could do, for each lock time."""
+"""Program `limit`: the least that any controller could do, for each lock time."""
 
 import argparse
 from functools import partial

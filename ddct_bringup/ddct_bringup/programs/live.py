@@ -22,8 +22,7 @@ examples:
   ddct live                   serve ROS domain 0, or that of ROS_DOMAIN_ID
   ddct live --port 9000       another port; 0 takes a free one
   ddct live --host 0.0.0.0    let other machines connect, with no password
-  ddct compare --controllers pi --live --out DIR
-                              a run with its own live view, in a domain of its own
+  ddct compare --controllers pi --live --out DIR    a run in a domain of its own, with its view
 
 Open the printed address in Foxglove: Open connection, Foxglove WebSocket. The graph may start
 before or after; Ctrl-C ends the server. Arguments behind --ros-args go to the node.

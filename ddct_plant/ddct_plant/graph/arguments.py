@@ -4,6 +4,8 @@
 
 import inspect
 import os
+import shutil
+import textwrap
 from collections.abc import Callable, Sequence
 
 import rclpy
@@ -15,9 +17,12 @@ from ddct_plant.graph.domain import discover_locally, require_domain, require_ro
 from ddct_plant.graph.half_made_ports import remove_half_made_ports
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.qos import QOS_OVERRIDES
+from ddct_plant.program.help_text import filled
 
 HELP = {'-h', '--help'}
 ROS_ARGUMENTS, _END_OF_ROS_ARGUMENTS = '--ros-args', '--'
+_UNDER = ' ' * 6
+"""Indentation of what a parameter means, below its name."""
 _NO_LOGS = 'failed to initialize logging'
 
 
@@ -84,35 +89,40 @@ def node_help(name: str, factory: Callable[[], GraphNode], arguments: Sequence[s
     """
     os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'OFF'
     try:
-        init_ros([argument for argument in arguments if argument not in HELP])
+        given = [argument for argument in arguments if argument not in HELP]
+        init_ros([*given, ROS_ARGUMENTS, '--log-level', 'warn'])
         node = factory()
         lines = _parameters(node)
         node.destroy_node()
     finally:
         rclpy.try_shutdown()
-    program = f'ddct node {name}'
-    return '\n'.join(
-        [
-            f'usage: {program} [--ros-args -p PARAMETER:=VALUE ...]',
-            '',
-            inspect.getdoc(type(node)) or '',
-            '',
-            'parameters, with their defaults or what is given:',
-            *lines,
-            '',
-            'examples:',
-            f'  {program}',
-            *(f'  {program} --ros-args {example}' for example in node.EXAMPLES),
-            '',
-            'All nodes of a graph take the same scenario, architecture, clutch, wear_gain, mode,',
-            'seed and, in a gear shift, off_going_wear_gain and handover.',
-        ]
-    )
+    program, width = f'ddct node {name}', shutil.get_terminal_size().columns
+    before = [
+        f'usage: {program} [--ros-args -p PARAMETER:=VALUE ...]',
+        '',
+        inspect.getdoc(type(node)) or '',
+        '',
+        'parameters, with their defaults or what is given:',
+    ]
+    after = [
+        '',
+        'examples:',
+        f'  {program}',
+        *(f'  {program} --ros-args {example}' for example in node.EXAMPLES),
+        '',
+        'All nodes of a graph take the same scenario, architecture, clutch, wear_gain, mode, seed '
+        'and, in a gear shift, off_going_wear_gain and handover.',
+    ]
+    shown = [filled('\n'.join(before), width), *lines, filled('\n'.join(after), width)]
+    return '\n'.join(shown)
 
 
 def _parameters(node: GraphNode) -> list[str]:
-    lines = []
+    lines, width = [], shutil.get_terminal_size().columns
     for parameter in node.get_parameters(node.own_parameters()):
         description = node.describe_parameter(parameter.name).description
-        lines += [f'  {parameter.name}: {parameter.value!r}', f'      {description}']
+        lines += [
+            f'  {parameter.name}: {parameter.value!r}',
+            *textwrap.wrap(description, width, initial_indent=_UNDER, subsequent_indent=_UNDER),
+        ]
     return lines

@@ -17,6 +17,7 @@ from typing import Any, NoReturn, Protocol
 from ddct_plant.base.errors import DdctError, printable
 from ddct_plant.files.json_records import write_json
 from ddct_plant.files.output_file import STDOUT
+from ddct_plant.program.help_text import HelpFormatter
 from ddct_plant.program.signals import (
     interrupted_by,
     interruptible,
@@ -96,11 +97,11 @@ def load_program(point: EntryPoint) -> Callable[[], int]:
 
 
 class ProgramParser(argparse.ArgumentParser):
-    """Argument parser that keeps line breaks, has --version, and reports errors in one line."""
+    """Argument parser with --version, whose help fits the terminal and whose errors are a line."""
 
     def __init__(self, **options: Any) -> None:
         """Accept the options of ArgumentParser."""
-        options.setdefault('formatter_class', argparse.RawDescriptionHelpFormatter)
+        options.setdefault('formatter_class', HelpFormatter)
         super().__init__(**options)
         self.add_argument(
             '--version', action='version', version=package_version(), help='print it, and end'
