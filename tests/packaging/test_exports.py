@@ -23,6 +23,7 @@ WITHIN = {
         *(f'json_records.{name}' for name in ('choices_of', 'fields_of', 'is_record', 'keys_of')),
     ),
     'program': (
+        'help_text.HelpFormatter',
         *(f'operating_system.{name}' for name in ('c_library', 'end_with', 'flush_c_output')),
         'operating_system.open_files_stay',
         *(f'operating_system.{name}' for name in ('processor_features', 'processor_name')),

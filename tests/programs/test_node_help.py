@@ -20,6 +20,7 @@ def help_of(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> Callable[..., str]:
     """Return a function that returns the help of a node, which runs in this process."""
+    monkeypatch.setenv('COLUMNS', '200')
 
     def shown(module: str, *arguments: str) -> str:
         monkeypatch.setattr(sys, 'argv', [module, *arguments])
@@ -46,7 +47,7 @@ def test_a_process_of_a_node_prints_the_same_help(help_of):
 @pytest.mark.parametrize('node', NODE_PROGRAMS, ids=lambda node: node.name)
 def test_help_names_the_parameters_and_where_to_give_them(node, help_of):
     text = help_of(node.module, '--help')
-    program = f'ddct {node.name}'
+    program = f'ddct node {node.name}'
     for expected in (program, 'scenario: ', "mode: 'lockstep'", '--ros-args -p'):
         assert expected in text
     assert ('wear_gain: 1.0' in text) == (not node_class(node.name).KNOWN_ONLY)

@@ -37,6 +37,8 @@ examples:
   ddct sweep --over controllers.pi.proportional_gain=0.05,0.1,0.2 --controllers pi --json -
   ddct sweep --over wear_gain=0.5:1.5:11 --controllers pi --csv wear.csv
   ddct sweep --over wear_gain=0.6:1.4:9 --over load.slope_rad=0:0.1:5 --controllers pi,ls8
+  ddct sweep --over wear_gain=0.5:1.5:11 --controllers pi --spec wear.yaml     then, as files:
+  ddct campaign wear.yaml --out campaigns/wear
 
 Runs are headless, on all cores, and judged as by `ddct score`. Values that belong together
 move together, as with --set. A run that fails is a row with its reason, and the exit code is 1.
@@ -59,6 +61,7 @@ def _sweep(argv: list[str]) -> int:
     require_one_for_stdout(options.json, options.csv)
     require_place('--json', options.json)
     require_place('--csv', options.csv)
+    require_place('--spec', options.spec)
     if options.figure:
         _require_picture(options.figure, len(options.over))
     sweep = shell.planned_sweep(
@@ -70,6 +73,8 @@ def _sweep(argv: list[str]) -> int:
     )
     for line in sweep.first.scenario.adjusted:
         _complain(f'at the first point {line}')
+    if options.spec:
+        write_text(options.spec, shell.dump_yaml(shell.specification_of(sweep)))
     started = time.perf_counter()
     with sweep.runs() as each:
         runs = list(shell.with_progress(each, len(sweep), f'{len(sweep)} runs'))
@@ -122,6 +127,11 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--csv', metavar='FILE', help="also write them as CSV; '-' is stdout")
     parser.add_argument(
         '--figure', metavar='FILE', help='also draw them: a .png, .svg or .html file'
+    )
+    parser.add_argument(
+        '--spec',
+        metavar='FILE',
+        help='also write the specification with which `ddct campaign` keeps the same runs',
     )
     add_limits_option(parser)
     add_settings_options(parser)

@@ -4,19 +4,26 @@
 
 import csv
 import json
+from pathlib import Path
 
 import pytest
 from by_schema import require_schema
 from refusals import refused
 
 from ddct_bringup import api
+from ddct_bringup.api.shell.sweeps import planned_sweep
+from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.rows import scored_headless
+from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.programs.sweep import main
 from ddct_bringup.run.run_base import RunBase
 from ddct_bringup.scores.document import run_entry
+from ddct_bringup.sweep.as_campaign import specification_of
+from ddct_bringup.sweep.axis import axis_of
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.from_python import chosen_from
 from ddct_plant.files.json_records import to_json
+from ddct_plant.files.yaml_text import dump_yaml, parse_yaml
 from ddct_plant.scenario.file import ScenarioFile
 
 SHORT_S = 1.0
@@ -117,6 +124,26 @@ def test_a_run_that_fails_is_a_row_with_its_reason_and_the_exit_code_is_1(tmp_pa
     assert '(at wear_gain=0.9; wear_gain=1)' in note
     assert 'ddct sweep: 2 of 4 runs are not valid' in printed.err
     assert 'invalid' in picture.read_text()
+
+
+def test_its_specification_is_a_campaign_with_the_same_runs():
+    """What is given for all runs is known or of the case as in the sweep, sensors' seed too."""
+    given = {
+        'scenario': 'thesis_sticking',
+        'set': {'load.slope_rad': 0.05, 'sensors.shaft_speed.noise_rad_s': 0.1},
+        'case': {'vehicle.mass_kg': 1700.0},
+        'wear_gain': 0.9,
+        'architecture': 'detailed',
+        'seed': 3,
+    }
+    axes = [axis_of('gear=1,2'), axis_of('driveline.halfshaft_stiffness=4000:6000:2')]
+    sweep = planned_sweep(['pi', 'ls8'], axes, packaged_limits(), print, **given)
+    spec = spec_of(parse_yaml(dump_yaml(specification_of(sweep))), Path())
+    campaign = Campaign(spec)
+    assert campaign.runs == len(sweep)
+    for index in range(len(sweep)):
+        mine, again = (runs.run(index) for runs in (sweep.run_set, campaign))
+        assert (mine.settings, mine.controller.name) == (again.settings, again.controller.name)
 
 
 BAD = {

@@ -55,5 +55,5 @@ def test_ddct_starts_the_programs_of_all_packages(prefix: Path) -> None:
     listed = run(prefix / 'bin' / 'ddct', '--help')
     for package in PACKAGES:
         assert f'\n{package}:\n' in listed
-    assert 'thesis' in run(prefix / 'bin' / 'ddct', 'bringup', '--list')
+    assert 'thesis' in run(prefix / 'bin' / 'ddct', 'compare', '--list')
     assert run(prefix / 'bin' / 'ddct', 'identify', '--help').startswith('usage: ddct identify ')

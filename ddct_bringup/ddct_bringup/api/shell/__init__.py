@@ -65,6 +65,7 @@ if TYPE_CHECKING:
     from ddct_bringup.scores.scored_recording import ScoredRecording
     from ddct_bringup.scores.scored_run import ScoredRun
     from ddct_bringup.scores.validity import realtime_summary
+    from ddct_bringup.sweep.as_campaign import specification_of
     from ddct_bringup.sweep.axis import axis_of
     from ddct_bringup.sweep.shown import sweep_shown
     from ddct_bringup.sweep.sweep import sweep_document
@@ -75,6 +76,7 @@ if TYPE_CHECKING:
     from ddct_controllers.registry import controller_label, controller_names, working_controllers
     from ddct_controllers.workflows.evidence import frequency_evidence
     from ddct_plant.files.json_records import write_json
+    from ddct_plant.files.yaml_text import dump_yaml
     from ddct_plant.graph.spin import run_node
     from ddct_plant.program.printed_table import print_note
     from ddct_plant.program.progress import with_progress
