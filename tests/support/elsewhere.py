@@ -110,7 +110,7 @@ def elsewhere(folder: Path) -> Path:
 
 
 def python_elsewhere(
-    site: Path, place: Path, *arguments: str
+    site: Path, place: Path, *arguments: str, within_s: float = WITHIN_S
 ) -> 'subprocess.CompletedProcess[str]':
     """Run Python in a folder `place` where `site` is that of `elsewhere`."""
     environment = {
@@ -126,6 +126,6 @@ def python_elsewhere(
         capture_output=True,
         encoding='utf-8',
         errors='replace',
-        timeout=WITHIN_S,
+        timeout=within_s,
         check=False,
     )
