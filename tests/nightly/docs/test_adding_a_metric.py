@@ -115,7 +115,8 @@ def test_campaigns_sweeps_report_and_pages_have_it(patched: Path) -> None:
         from ddct_bringup.campaign.columns import runs_table, schema_over
         from ddct_bringup.campaign.rows import SERIAL, ScoredRow, scored_headless
         from ddct_bringup.evaluation.quantities import QUANTITIES
-        from ddct_bringup.report.definitions import definitions
+        from ddct_bringup.metrics.catalogue import METRICS
+        from ddct_bringup.report.definitions import ShownParts, definitions
         from ddct_bringup.run.run_base import RunBase
         from ddct_bringup.verdict.limits import packaged_limits
         from ddct_plant.scenario.file import ScenarioFile
@@ -128,7 +129,8 @@ def test_campaigns_sweeps_report_and_pages_have_it(patched: Path) -> None:
         assert row['{KEY}'] > 1.0
         assert '{KEY}' in QUANTITIES
         assert [each.key for each in metrics_called('--metrics', '{KEY}')] == ['{KEY}']
-        found = definitions((), thesis=False)
+        shown = ShownParts((), list(METRICS.values()), frozenset(), frozenset())
+        found = definitions(shown)
         assert 'peak w_d' in [each.term for group in found.values() for each in group]
         assert '`{KEY}`' in [row[0] for row in score_tables()['metrics'].rows]
         """,
