@@ -7,6 +7,7 @@ import os
 from unittest.mock import patch
 
 from rclpy.context import Context
+from rclpy.logging import LoggingSeverity, get_logger_effective_level, set_logger_level
 
 from ddct_bringup.processes.graph_nodes import NODE_PROGRAMS
 from ddct_plant.graph.arguments import init_ros
@@ -25,6 +26,8 @@ OF_CONTROLLER = 'gains.'
 def parameter_tables() -> dict[str, TextTable]:
     """Return the parameters of each node, by its name, without the shared ones."""
     tables = {}
+    level = get_logger_effective_level('')
+    set_logger_level('', LoggingSeverity.WARN)  # nodes say at their start what they wait for
     with patch.dict(os.environ, ROS_AUTOMATIC_DISCOVERY_RANGE='OFF'):
         context = Context()
         init_ros([], context)
@@ -37,6 +40,7 @@ def parameter_tables() -> dict[str, TextTable]:
                 node.destroy_node()
         finally:
             context.try_shutdown()
+            set_logger_level('', level)
     return tables
 
 
