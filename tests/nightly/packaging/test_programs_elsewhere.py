@@ -71,7 +71,7 @@ def test_compiled_code_has_a_new_process_whose_end_is_the_reason_of_its_run(
 def test_pip_installs_what_works_without_ros() -> None:
     if offline():
         pytest.skip('no package index')
-    command = [sys.executable, ROOT / 'tools' / 'without_ros']
+    command = [sys.executable, str(ROOT / 'tools' / 'without_ros')]
     done = subprocess.run(command, capture_output=True, text=True, timeout=1800.0, check=False)
     assert done.returncode == 0, done.stderr
 
