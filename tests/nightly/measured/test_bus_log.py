@@ -43,10 +43,11 @@ def test_its_driveline_comes_out_of_frames_by_a_guessed_map(folder: Path, launch
     options = ['--from', 'drive.mf4', '--columns', 'map.yaml', '--scenario', 'launch']
     assert main([*options, '--json', 'fit.json', '--out', 'mine']) == 0
     content = json.loads((folder / 'fit.json').read_text())
-    found = {each['name']: each['value'] for each in content['parameters']}
+    rows = {each['name']: each for each in content['parameters']}
     true = launch.settings.scenario.driveline.values()
     for name, share in WITHIN.items():
-        assert found[name] == pytest.approx(true[name], rel=share), name
+        assert rows[name]['value'] == pytest.approx(true[name], rel=share), name
+        assert rows[name]['lowest'] <= true[name] <= rows[name]['highest'], name
     assert content['mass_kg'] == pytest.approx(launch.settings.scenario.vehicle.mass_kg, rel=0.01)
     delays = {each['signal']: each['delay_s'] for each in content['delays']}
     assert all(abs(each) < 0.006 for each in delays.values())

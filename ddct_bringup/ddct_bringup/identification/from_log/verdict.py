@@ -130,8 +130,8 @@ def _undetermined(fit: LogFit) -> Iterator[str]:
     if fit.undetermined:
         yield (
             f'the log does not determine {", ".join(_named(each) for each in fit.undetermined)}: '
-            'the car keeps its value, a delay is taken as 0, and the other intervals hold '
-            'for that value'
+            'what the car has of them stays, a delay is taken as 0, and the other intervals hold '
+            'for these values'
         )
 
 
