@@ -60,8 +60,7 @@ def require_unaltered(folder: Path, names: Sequence[str], *, advice: str = '') -
     Raise DdctError for a file that is not as its digest; `names` are paths in `folder`.
 
     The folder is that of a result, or in one. With an `advice`, each file that exists must have a
-    digest. Else one without a digest is not checked: who goes on with a result computes again
-    what has none.
+    digest. Else a file without a digest is not checked, because `--resume` computes it again.
     """
     result = result_around(folder)
     if result is None:

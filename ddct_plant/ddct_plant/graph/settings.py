@@ -254,7 +254,7 @@ def as_declared(given: Parameter, declared: Parameter.Type) -> Parameter:
     """
     Return a parameter whose numbers are whole with the type that is declared; others unchanged.
 
-    rclpy compares the types alone: to it 5 is no value of a parameter that is 5.0 elsewhere.
+    rclpy refuses the whole number 5 for a parameter that is declared as 5.0.
     """
     types, value = (given.type_, declared), given.value
     if types == (Parameter.Type.INTEGER, Parameter.Type.DOUBLE):

@@ -88,7 +88,7 @@ def _garbage_collected_by_timer() -> Iterator[None]:
 
     Objects of the start stay for the whole run, and messages contain no reference cycles: the
     timer of `end_of` has little to collect, mostly between two ticks. Nothing is frozen where the
-    caller has frozen objects: these could not be told apart at the end.
+    caller has frozen objects, because the two could not be told apart at the end.
     """
     enabled, ours = gc.isenabled(), not gc.get_freeze_count()
     gc.collect()

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Lock files, which exist while a process works on what they stand for, by `portalocker`."""
+"""Lock files by `portalocker`: each exists while a process uses the file or folder it is for."""
 
 import errno
 import os

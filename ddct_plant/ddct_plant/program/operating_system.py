@@ -1,7 +1,7 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-What programs ask of the operating system, and what stands in where it is not Linux.
+What programs need of the operating system, on Linux and elsewhere.
 
 Other modules of headless programs use what Python has everywhere. The graph of ROS nodes runs on
 Linux alone: its modules ask Linux themselves.

@@ -100,9 +100,10 @@ def _get_ready() -> str:
 @contextmanager
 def drawn_apart() -> Iterator[Callable[..., str]]:
     """
-    Yield a function that does as `draw_page` in a process, which imports what draws meanwhile.
+    Yield a function like `draw_page` that draws in a second process.
 
-    Where that process has ended, as for want of memory, it draws in this one.
+    That process imports what it needs while this one goes on. If it has ended, as for lack of
+    memory, the function draws in this process.
     """
     with closing(LocalWorkers(1)) as process:
         submit = process.begin(Each(call))

@@ -92,7 +92,7 @@ def packaged_tables() -> Mapping[str, Table]:
 
 
 def packaged_lines() -> Iterator[str]:
-    """Yield how many cases are compared, then what counts, what nobody gains by, what is open."""
+    """Yield how many cases are compared, then the rules on what counts and on tricks."""
     rules = packaged_limits().rules
     yield _compared_cases(release_rows(packaged_folder()).rows)
     yield 'What counts:'

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""What counts in a benchmark, what nobody gains by, and what stays open to gaming."""
+"""What counts in a benchmark, which tricks gain nothing, and which stay possible."""
 
 from collections.abc import Mapping
 

@@ -3,8 +3,8 @@
 """
 Temporary folders with the unpacked files of FMUs, each locked by the process that uses it.
 
-A process that crashes leaves its folder behind: whoever unpacks an FMU next, or has waited for
-the process, removes it.
+A process that crashes leaves its folder behind. The process that waited for it, or the next one
+that unpacks an FMU, removes it.
 """
 
 import shutil
