@@ -13,6 +13,8 @@ from pathlib import Path
 import pytest
 from waiting import WITHIN_S
 
+from ddct_bringup.programs.ddct import TASKS
+
 pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -53,7 +55,8 @@ def test_ddct_alone_comes_onto_the_path(prefix: Path, tmp_path: Path) -> None:
 
 def test_ddct_starts_the_programs_of_all_packages(prefix: Path) -> None:
     listed = run(prefix / 'bin' / 'ddct', '--help')
-    for package in PACKAGES:
-        assert f'\n{package}:\n' in listed
+    for task in TASKS:
+        assert f'\n{task}:\n' in listed
+    assert '  controller  ' in run(prefix / 'bin' / 'ddct', 'node', '--help')
     assert 'thesis' in run(prefix / 'bin' / 'ddct', 'compare', '--list')
     assert run(prefix / 'bin' / 'ddct', 'identify', '--help').startswith('usage: ddct identify ')
