@@ -28,8 +28,15 @@ from ddct_plant.base.errors import DdctError
 
 def shard_size_of(campaign: Campaign) -> int:
     """Return the number of cases in a shard, which follows from the specification alone."""
-    size = block_size(campaign.runs, together=are_together(campaign))
+    key = f'{campaign.digest()} {campaign.spec.folder}'
+    if key not in _together:  # finding it tries controllers
+        _together[key] = are_together(campaign)
+    size = block_size(campaign.runs, together=_together[key])
     return max(1, size // len(campaign.controllers))
+
+
+_together: dict[str, bool] = {}
+"""Whether runs are computed together, by digest and folder of the campaign."""
 
 
 def shards_of(campaign: Campaign, size: int) -> dict[str, range]:

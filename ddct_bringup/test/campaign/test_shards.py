@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from ddct_bringup.campaign import scored
+from ddct_bringup.campaign import scored, shards
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import differences, parquet_bytes, runs_table, schema_of
 from ddct_bringup.campaign.rows import VECTORISED
@@ -76,14 +76,15 @@ def test_shards_of_runs_that_are_computed_together_are_large(
     why_not: str, cases: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(scored, 'why_not_batchable', lambda settings, controller: why_not)
+    monkeypatch.setattr(shards, '_together', {})
     wear = {'wear_gain': {'distribution': 'uniform', 'low': 0.8, 'high': 1.2}}
     random = {'samples': 2000, 'vary': wear}
     content = {'controllers': ['pi', 'ls8'], 'random': random}
     campaign = Campaign(spec_of(content, Path()))
     assert shard_size_of(campaign) == cases
-    shards = shards_of(campaign, cases)
-    assert [*shards][:2] == ['00000000.parquet', f'{cases:08d}.parquet']
-    runs = sorted(index for each in shards.values() for index in runs_in(campaign, each))
+    found = shards_of(campaign, cases)
+    assert [*found][:2] == ['00000000.parquet', f'{cases:08d}.parquet']
+    runs = sorted(index for each in found.values() for index in runs_in(campaign, each))
     assert runs == list(range(campaign.runs))
 
 

@@ -117,6 +117,11 @@ def gaussian(seed: int, quantity: str) -> Iterator[float]:
         yield from random.standard_normal(_BLOCK).tolist()
 
 
+def gaussians(seed: int, quantity: str, count: int) -> np.ndarray:
+    """Return the first numbers of `gaussian`, (count,)."""
+    return _generator(seed, quantity, 'noise').standard_normal(count)
+
+
 def losses(seed: int, quantity: str, options: SensorOptions) -> Iterator[bool]:
     """
     Yield for each step whether its sample is lost; the sample of step 0 never is.

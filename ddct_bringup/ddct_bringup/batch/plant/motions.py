@@ -163,7 +163,7 @@ class Maps:
             yield runs, at_once, self._matrices[signs]
             return
         heights = self._made(signs, runs)[runs]
-        for height in np.unique(heights).tolist():
+        for height in sorted({*heights.tolist()}):
             some = runs
             if (heights != height).any():
                 some = np.arange(len(self._integrators))[runs][heights == height]
@@ -199,6 +199,6 @@ def by_mode(signs: np.ndarray, running: np.ndarray) -> Iterator[tuple[Signs, Run
     if running.all() and (codes == codes[0]).all():
         yield tuple(signs[0].tolist()), slice(None)
         return
-    for code in np.unique(codes[running]).tolist():
+    for code in sorted({*codes[running].tolist()}):
         runs = np.flatnonzero(running & (codes == code))
         yield tuple(signs[runs[0]].tolist()), runs

@@ -3,7 +3,7 @@
 """Sensors of many runs."""
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from itertools import islice
 from typing import Any, NamedTuple
 
@@ -13,7 +13,7 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.driveline import DrivelineOutputs
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.sensors.parameters import SensorOptions, SpeedSensor
-from ddct_plant.sensors.sensor import gaussian, losses
+from ddct_plant.sensors.sensor import gaussians, losses
 
 CLOSE = 1e-9
 """
@@ -88,24 +88,24 @@ class _Sensors:
         options: Sequence[SensorOptions] = _options(runs, quantities)
         streams = [(run.case.seed, quantity) for quantity in quantities for run in runs]
         self._gain = np.array([each.gain for each in options])
-        noise, self._quantum, self._bias = np.array([each.errors for each in options]).T
-        ends = [run.scenario.steps for _ in quantities for run in runs]
-        self._noise = _drawn(
+        noise, quantum, self._bias = np.array([each.errors for each in options]).T
+        self._quantised = quantum > 0.0 if (quantum > 0.0).any() else None
+        self._quantum = np.where(quantum > 0.0, quantum, 1.0)
+        counts = [min(run.scenario.steps, steps) + 1 for _ in quantities for run in runs]
+        self._noise = _stacked_columns(
             [
-                gaussian(*stream) if sigma else None
-                for stream, sigma in zip(streams, noise, strict=True)
+                gaussians(*stream, count) if sigma else None
+                for stream, sigma, count in zip(streams, noise, counts, strict=True)
             ],
-            ends,
             steps,
         )
         if self._noise is not None:
             self._noise *= noise
-        self._lost = _drawn(
+        self._lost = _stacked_columns(
             [
-                losses(*stream, each) if each.dropout else None
-                for stream, each in zip(streams, options, strict=True)
+                list(islice(losses(*stream, each), count)) if each.dropout else None
+                for stream, each, count in zip(streams, options, counts, strict=True)
             ],
-            ends,
             steps,
         )
         self._delay = np.array([each.delay_steps for each in options])
@@ -128,10 +128,9 @@ class _Sensors:
         value = self._gain * truth + self._bias
         if self._noise is not None:
             value = value + self._noise[step]
-        if not self._quantum.any():
+        if self._quantised is None:
             return value
-        quantised = (self._quantum > 0.0) & np.isfinite(value)
-        quantum = np.where(quantised, self._quantum, 1.0)
+        quantised, quantum = self._quantised & np.isfinite(value), self._quantum
         # The remainder is exact, as that of `math.remainder`.
         rest = np.fmod(value, quantum)
         beyond = quantum - np.abs(rest)
@@ -141,21 +140,14 @@ class _Sensors:
         return np.where(quantised, value - rest, value)
 
 
-def _drawn(
-    streams: Sequence[Iterator[float] | None], ends: Sequence[int], steps: int
-) -> np.ndarray | None:
-    """
-    Return the values of each stream up to the last step of its run, (N + 1, R), then zero.
-
-    A run without a stream has zeros; it is None without any.
-    """
-    if not any(streams):
+def _stacked_columns(columns: Sequence[Sequence[Any] | np.ndarray | None], steps: int) -> Any:
+    """Return random values of all runs as columns, (N + 1, R), zero where a run has none."""
+    if all(each is None for each in columns):
         return None
-    values = np.zeros((steps + 1, len(streams)))
-    for place, (each, end) in enumerate(zip(streams, ends, strict=True)):
+    values = np.zeros((steps + 1, len(columns)))
+    for place, each in enumerate(columns):
         if each is not None:
-            count = min(end, steps) + 1
-            values[:count, place] = list(islice(each, count))
+            values[: len(each), place] = each
     return values
 
 
