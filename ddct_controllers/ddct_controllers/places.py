@@ -7,6 +7,7 @@ import traceback
 from pathlib import Path
 
 from ddct_controllers.interface import Controller
+from ddct_plant.files.input_file import without_folder
 
 
 def place_of_error(error: BaseException, package: str) -> str:
@@ -53,8 +54,3 @@ def place_of_failure(controller: Controller, error: BaseException) -> str:
     place = without_folder(line or controller.written_in or place_of_method(controller, 'update'))
     own_name = controller.method_names.get('update') if controller.written_in else None
     return f'{own_name} of {place}' if own_name else place
-
-
-def without_folder(place: str) -> str:
-    """Return a place that begins with a file without the folder of that."""
-    return place.rpartition('/')[2]

@@ -8,7 +8,7 @@ from typing import Any
 
 from ddct_controllers.from_file.python_file import the_one_class
 from ddct_controllers.handover.interface import Handover, HandoverCommand, HandoverMeasurement
-from ddct_controllers.places import place_of_error, without_folder
+from ddct_controllers.places import place_of_error
 from ddct_controllers.plugins import HANDOVERS
 from ddct_plant.base.errors import (
     FOREIGN_FAILURES,
@@ -17,6 +17,7 @@ from ddct_plant.base.errors import (
     ParameterError,
     require_number,
 )
+from ddct_plant.files.input_file import without_folder
 from ddct_plant.scenario.settings import KnownSettings, is_handover_file
 from ddct_plant.shift.balance import LEAST_DEVIATION
 

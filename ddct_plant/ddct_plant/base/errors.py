@@ -52,8 +52,10 @@ class ParameterError(DdctError, ValueError):
     """A parameter, option or scenario key has a value that cannot be used."""
 
 
-_ABSOLUTE = re.compile(r"""(?<![\w.])/(?:[^\s/:'"()<>]+/)+""")
-"""Folders of an absolute path in a text."""
+_ABSOLUTE = re.compile(
+    r"""(?<![\w.])(?:/(?:[^\s/:'"()<>]+/)+|[A-Za-z]:[/\\](?:[^\s/\\:'"()<>]+[/\\])+)"""
+)
+"""Folders of an absolute path in a text, of Windows too."""
 
 
 def without_folders(text: str) -> str:

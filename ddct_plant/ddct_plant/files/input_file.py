@@ -18,6 +18,7 @@ from ddct_plant.base.errors import DdctError, ParameterError
 SCHEMA_KEY = 'schema_version'
 """Key of the schema version of a file."""
 _PATH = re.compile(r'[\w-]+(?:\.[\w-]+|\[\d+\])*')
+_SEPARATOR = re.compile(r'[/\\]')
 _PARENT = re.compile(r'(?:\.[\w-]+|\[\d+\])$')
 
 
@@ -71,6 +72,11 @@ def entry_of(text: str, entries: Mapping[str, Entry]) -> Entry | None:
         if word:
             return entries[word]
     return None
+
+
+def without_folder(place: str) -> str:
+    """Return a place that begins with the path of a file, on any system, without its folder."""
+    return _SEPARATOR.split(place)[-1]
 
 
 def require_schema_version(content: Mapping[str, Any], newest: int) -> None:

@@ -15,6 +15,7 @@ from typing import Any, Protocol, Self
 from ddct_plant.base.clutch_kinds import STICK_SLIP
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import OptionGroup, option_field, options_of
+from ddct_plant.files.input_file import without_folder
 from ddct_plant.scenario.choices.settings import SETTINGS
 from ddct_plant.scenario.control import ENGINE_SPEED_TARGET, PROFILE
 from ddct_plant.scenario.rules.capability import require_able
@@ -32,7 +33,7 @@ def is_handover_file(handover: str) -> bool:
 
 def handover_name(handover: str) -> str:
     """Return the name of a handover in bags and tables: of a file its name without the ending."""
-    return handover.rpartition('/')[2].removesuffix(_PYTHON)
+    return without_folder(handover).removesuffix(_PYTHON)
 
 
 @dataclass(frozen=True)

@@ -79,3 +79,8 @@ def test_the_reason_of_a_run_names_files_without_folders():
     text = 'controller file /home/me/mine.yaml: line 2: a/b is 1/2, in /tmp/x/y.py line 3'
     expected = 'controller file mine.yaml: line 2: a/b is 1/2, in y.py line 3'
     assert without_folders(text) == expected
+    windows = (
+        r'controller file C:\Users\me\mine.yaml: line 2: \x1b\x1b is no name, in d:/x/y.py line 3'
+    )
+    expected = r'controller file mine.yaml: line 2: \x1b\x1b is no name, in y.py line 3'
+    assert without_folders(windows) == expected

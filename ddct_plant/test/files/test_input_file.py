@@ -8,7 +8,7 @@ import pytest
 from refusals import refused
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.input_file import located, named_in, user_bytes, user_text
+from ddct_plant.files.input_file import located, named_in, user_bytes, user_text, without_folder
 from ddct_plant.scenario.file import load_scenario
 
 
@@ -46,6 +46,11 @@ def test_a_file_that_may_not_be_read_gives_the_reason(tmp_path, monkeypatch):
 def test_a_folder_in_place_of_a_scenario_gives_one_line(tmp_path):
     with pytest.raises(DdctError, match=r'cannot be read \(Is a directory\)$'):
         load_scenario(str(tmp_path))
+
+
+@pytest.mark.parametrize('folder', ['', '/home/me/', 'C:\\Users\\me\\', 'd:/me/'])
+def test_a_place_loses_the_folder_of_any_system(folder: str) -> None:
+    assert without_folder(f'{folder}mine.py line 3') == 'mine.py line 3'
 
 
 def test_an_absolute_name_in_the_inputs_of_a_result_is_that_of_the_copy(tmp_path: Path) -> None:
