@@ -63,7 +63,8 @@ def test_enforced_security_that_is_missing_is_an_error_of_one_line(
     monkeypatch.setenv('ROS_SECURITY_KEYSTORE', str(tmp_path))
     init_ros([], context)
     try:
-        with pytest.raises(DdctError, match=r'^error creating node: .*: mend what .* ROS_\*$'):
+        words = r'^error creating node: .*: mend the environment variables ROS_\*$'
+        with pytest.raises(DdctError, match=words):
             EngineNode(context=context)
     finally:
         context.try_shutdown()
