@@ -150,8 +150,8 @@ class LogDrive:
             nearest = gearbox.gear(number)
             radius = self.base.vehicle.wheel_radius_m * nearest.shaft_ratio(gear)
             yield (
-                f'the total ratio of {gear.total_ratio:.4g} is that of no gear (gear {number} has '
-                f'{nearest.total_ratio:.4g}), so the new car has this gear alone and cannot '
+                f'the total ratio of {gear} is that of no gear (gear {number} has '
+                f'{nearest}), so the new car has this gear alone and cannot '
                 'shift: give a car with its gears by --car, or, if the wheel speed is in km/h and '
                 f'this is gear {number}, radius_m: {radius:.4g} in the column map'
             )
