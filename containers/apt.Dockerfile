@@ -14,4 +14,4 @@ COPY . .
 RUN apt-get update && . /opt/ros/jazzy/setup.bash \
     && rosdep update && rosdep install -y --from-paths ddct_plant ddct_reference ddct_controllers ddct_bringup \
     --ignore-src && colcon build && rm -rf /var/lib/apt/lists/*
-CMD ["bash", "-c", ". install/setup.bash && ros2 run ddct_bringup compare --controllers pi,ls8,hinf1 --out runs/apt --overwrite"]
+CMD ["bash", "-c", ". install/setup.bash && ddct compare --controllers pi,ls8,hinf1 --out runs/apt --overwrite"]

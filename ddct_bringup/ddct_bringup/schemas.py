@@ -96,7 +96,7 @@ DOCUMENTS: Mapping[str, JsonDocument] = {
     'verify_several': JsonDocument('--json of verify, of several results', FoldersDocument),
     'identify': JsonDocument('--json of identify', IdentificationDocument),
     'identify_log': JsonDocument('--json of identify --from', LogFitDocument),
-    'check_controller': JsonDocument('--json of check', CheckReport),
+    'check': JsonDocument('--json of check', CheckReport),
     'numbers': JsonDocument('--json of thesis numbers', NumbersDocument),
     'studies': JsonDocument('--json of thesis studies', Mapping[str, WrittenStudy]),
     'benchmark_packaged': JsonDocument(

@@ -122,6 +122,8 @@ def test_compare_fails_and_its_table_and_scores_have_the_reason(leave, tmp_path,
     words = ' '.join(line for line in printed.err.splitlines() if line.startswith('  pi ')).split()
     assert ' 7 1.23 ' in ' '.join(words)
     assert {'/actuator', 'invalid'} <= {*words}
+    summary = '7 of 60 steps missed, worst lateness 1.23 ms, safe state: /actuator at 0.4 s'
+    assert f'ddct compare: pi: {summary}\n' in printed.err
     assert f'warnings are in {tmp_path / "runs.partial" / "pi" / "work"}' in printed.err
 
 

@@ -214,7 +214,7 @@ def report_of(capfd: pytest.CaptureFixture[str], code: int, *arguments: str) -> 
     assert program.main([*arguments, '--json', '-']) == code
     output = capfd.readouterr()
     report = json.loads(output.out)
-    require_schema('check_controller', report)
+    require_schema('check', report)
     return report, output.err
 
 

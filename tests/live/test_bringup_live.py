@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""`bringup --live` when there is no viewer, or no way to serve one."""
+"""`bringup --live`, and `compare --live`, when there is no viewer, or no way to serve one."""
 
 import signal
 import socket
@@ -11,7 +11,7 @@ from support.complaints import assert_one_line
 from support.processes import Programs
 from waiting import wait_until
 
-from ddct_bringup.programs import bringup
+from ddct_bringup.programs import bringup, compare
 
 
 @pytest.mark.parametrize('layout', ['--headless', '--single-process'])
@@ -21,6 +21,12 @@ def test_it_needs_a_process_per_node(
     assert bringup.main(['--live', '0', layout, '--out', str(tmp_path / 'runs')]) == 1
     assert_one_line(capfd.readouterr().err, 'bringup', '--live', layout)
     assert not (tmp_path / 'runs').exists()
+
+
+def test_compare_shows_one_run(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    out = str(tmp_path / 'runs')
+    assert compare.main(['--controllers', 'pi,ls8', '--live', '0', '--out', out]) == 1
+    assert_one_line(capfd.readouterr().err, 'ddct compare', '--live shows one run, not 2')
 
 
 @pytest.mark.usefixtures('extras')
