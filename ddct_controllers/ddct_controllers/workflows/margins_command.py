@@ -54,6 +54,7 @@ _EXAMPLES = """\
 examples:
   ddct design margins
   ddct design margins --controller ls8 --wear-gain 1.3 --json -
+  ddct design margins --controller ls8 --car city7          in another car, or mycar.yaml
   ddct design margins --controller hinf2 --set actuator.delay_s=0.05"""
 
 

@@ -39,12 +39,12 @@ def filled(text: str, width: int) -> str:
 
 
 def _continued(line: str, width: int) -> list[str]:
-    """Return a line in several: a short word with its remark as a list, else the remark below."""
+    """Return a line in several: the remark of one word in its column, of a command below it."""
     found = _REMARK.match(line)
     command, remark = found.groups() if found else (line, '')
     indent = command[: len(command) - len(command.lstrip())]
     column = line.index(remark, len(command)) if remark else 0
-    if remark and column <= width // 3:
+    if remark and ' ' not in command.strip():
         rows = textwrap.wrap(remark, width - column, break_on_hyphens=False)
         return [f'{command:{column}}{rows[0]}', *(' ' * column + row for row in rows[1:])]
     rows = textwrap.wrap(

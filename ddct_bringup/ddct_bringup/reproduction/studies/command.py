@@ -3,7 +3,6 @@
 """Subcommand `thesis studies`: the causes of the predictive controllers' results."""
 
 import argparse
-import textwrap
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -83,16 +82,13 @@ def add_parser(subparsers: Any) -> None:
 
 
 def _studies() -> str:
-    """Return every study with its subject, a line each, for a terminal of 80 columns."""
-    lines = ['studies:']
-    for name, function in STUDIES.items():
-        lines += textwrap.wrap(
-            f'{name:{_NAME_COLUMNS}} {_ABOUT.get(function, _OF_A_SCENARIO)}',
-            _COLUMNS,
-            initial_indent='  ',
-            subsequent_indent=' ' * (_NAME_COLUMNS + 3),
-        )
-    return '\n'.join(lines)
+    """Return every study with its subject, a line each."""
+    width = max(map(len, STUDIES))
+    return '\n'.join(['studies:', *(f'  {name:{width}}  {_about(name)}' for name in STUDIES)])
+
+
+def _about(name: str) -> str:
+    return _ABOUT.get(STUDIES[name], _OF_A_SCENARIO)
 
 
 def run(options: argparse.Namespace) -> int:
