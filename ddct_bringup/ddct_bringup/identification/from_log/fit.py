@@ -88,14 +88,15 @@ def fit_log(
         x, by_speeds = problem.solve()
         by_noise, variance = _mean_and_variance(problem.moves(x, noisier))
         thinned, _ = _mean_and_variance(problem.moves(x, thinner))
-        # Half of the rows have twice the noise in each second, too. The error between rows grows
-        # with the square of their step, so a third of the rest is that of corners anywhere.
-        between = (thinned - by_noise) / 3.0 if thinner else 0.0 * x
+        # Half of the rows have twice the noise in each second, too. The error of a torque that
+        # jumps between rows grows with their step: all of the rest is that of jumps.
+        between = thinned - by_noise if thinner else 0.0 * x
         by_rounding, scatter = _mean_and_variance(problem.moves(x, coarser))
         std = np.sqrt(by_speeds + variance + scatter)
         std = np.sqrt(std**2 + by_noise**2 + between**2 + by_rounding**2)
-        # Corners on rows make no error: half of it is moved back.
-        moved = by_noise + between / 2.0 + by_rounding
+        # That of corners grows with the square, so a third is theirs. Corners on rows make none:
+        # half of that is moved back.
+        moved = by_noise + between / 6.0 + by_rounding
         found = unknowns.not_determined(std, moved)
         if not found:
             std = np.hypot(std, [_lateness(log, name) / DELAY_S for name in names])
