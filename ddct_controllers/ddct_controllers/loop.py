@@ -44,11 +44,8 @@ class ObservedStep(NamedTuple):
     """What a controller receives of the plant."""
     handover: HandoverCommand | None
     """Command of the handover for the period; None without a shift."""
-
-    @property
-    def on_coming(self) -> OnComingShare:
-        """Share in C_fOL of the clutch whose torque is requested."""
-        return WHOLE if self.handover is None else self.handover.on_coming
+    on_coming: OnComingShare
+    """Share in C_fOL of the clutch whose torque is requested."""
 
 
 class AskedStep(NamedTuple):
@@ -77,13 +74,14 @@ class PlantLoop(ABC):
         """Return the plant at step k, with the command of the handover."""
         tick = self.plant.tick(step)
         if self._handover is None:
-            return ObservedStep(self.plant.observe(tick), None)
+            return ObservedStep(self.plant.observe(tick), None, WHOLE)
         command = self._handover.update(HandoverMeasurement.of_tick(tick))
-        return ObservedStep(self.plant.observe(tick, command.torque_cut), command)
+        observation = self.plant.observe(tick, command.torque_cut)
+        return ObservedStep(observation, command, command.on_coming)
 
     def answer(self, observed: ObservedStep, request: Request) -> PlantReply:
         """Return torques and every signal of an observed step; advance all but the plant."""
-        observation, command = observed
+        observation, command, _ = observed
         if command is None:
             reply = self.plant.reply(observation, request.torque, request.engine_torque)
         else:
@@ -170,7 +168,7 @@ class ClosedLoop(PlantLoop):
 
     def _measurement(self, observed: ObservedStep) -> Measurement:
         """Change the gains of a step, and return what is measured, with the slip reference."""
-        observation, on_coming = observed.observation, observed.on_coming
+        observation, _, on_coming = observed
         step, measured = observation.tick.step, observation.tick.measured
         if step in self._changes:
             self.architecture.change_gains(self._changes[step])

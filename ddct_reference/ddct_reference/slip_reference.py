@@ -95,8 +95,7 @@ class DescendingReference(SlipReference):
         if follows and not self._stored:
             self._start_value = slip_speed
         points = [self._point(step + ahead) for ahead in range(self.preview_steps + 1)]
-        speeds, rates = zip(*points, strict=True)
-        return list(speeds), list(rates)
+        return [speed for speed, _ in points], [rate for _, rate in points]
 
     def _point(self, step: int) -> tuple[float, float]:
         if step >= self.start_step:
