@@ -123,6 +123,17 @@ def test_a_name_that_leads_nowhere_is_explained(name: str, words: list[str]) -> 
         assert word in found['entry point']
 
 
+def test_a_module_that_imports_what_is_missing_is_not_taken_for_renamed(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    (tmp_path / 'needs_more.py').write_text('import no_such_package\n', encoding='utf-8')
+    points = {'needs_more': 'needs_more:NeedsMore'}
+    install(monkeypatch, tmp_path / 'site', tmp_path, points)
+    detail = failed(outcomes_of('needs_more'))['entry point']
+    assert "No module named 'no_such_package'" in detail
+    assert 'renamed' not in detail
+
+
 @pytest.mark.usefixtures('installed')
 @pytest.mark.parametrize('name', [*RIGHT, 'from_function'])
 def test_a_controller_in_order_fails_no_check(name: str) -> None:

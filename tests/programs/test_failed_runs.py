@@ -107,6 +107,7 @@ def test_compare_keeps_the_valid_runs_and_prints_the_reasons_of_the_others(
     reason = REASONS[bad_ls8]
     printed = capfd.readouterr()
     assert 'ddct compare: not valid: ls8: the table and the report say why' in printed.err
+    assert 'steps missed' not in printed.err, 'that is of runs in real time'
     rows = {line.split()[0]: line.split()[-1] for line in printed.out.splitlines() if line.split()}
     assert (rows['pi'], rows['ls8']) == ('not_engaged', 'invalid')
     assert f'ls8: not valid: {reason}' in ' '.join(printed.out.split())

@@ -195,10 +195,13 @@ def test_program_writes_the_same_numbers_as_csv(
     assert 'there is no folder' in capsys.readouterr().err
 
 
-def test_program_prints_the_tables(capsys: pytest.CaptureFixture[str]) -> None:
+def test_program_prints_the_tables_of_chapters_without_reasons(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     assert thesis.main(['numbers']) == 0
     printed = capsys.readouterr().out
     assert 'Errata of the thesis' in printed and 'distinct facts' in printed
+    assert not [line for line in printed.splitlines() if line.endswith(' reason')]
 
 
 def test_program_without_one_of_its_sources_reports_its_numbers_as_not_computed(

@@ -37,3 +37,15 @@ def test_speeds_that_come_together_stay() -> None:
     signals = dict.fromkeys(('engine_speed', 'shaft_speed', 'wheel_speed'), ENGINE_S)
     log = MeasuredLog(Path('a.csv'), '', ENGINE_S, signals)
     assert in_common_rows(log) is log
+
+
+def test_speeds_that_mostly_come_together_stay() -> None:
+    """Every fourth sample of a speed is lost, as on a busy bus, each time of another one."""
+    names = ('engine_speed', 'shaft_speed', 'wheel_speed')
+    places = np.arange(len(ENGINE_S))
+    signals = {
+        name: np.where(places % 12 == 4 * lost, np.nan, ENGINE_S)
+        for lost, name in enumerate(names)
+    }
+    log = MeasuredLog(Path('a.csv'), '', ENGINE_S, signals)
+    assert in_common_rows(log) is log

@@ -2,10 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """A number of a log is determined within limits of its deviation and of its shift by noise."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from ddct_bringup.identification.from_log.perturbed import rounded_again
 from ddct_bringup.identification.from_log.unknowns import Unknowns
+from ddct_bringup.logs.log import MeasuredLog
 
 
 def not_determined(names: list[str], std: np.ndarray, moved: np.ndarray) -> list[str]:
@@ -32,3 +36,15 @@ def test_while_a_delay_is_weak_no_parameter_is_left_out():
     large, none = np.full(2, 10.0), np.zeros(2)
     assert not_determined(names, large, none) == ['engine_torque']
     assert not_determined(names, large * [1.0, 0.0], none) == ['engine_inertia']
+
+
+def test_a_torque_that_is_rounded_again_moves_by_half_a_step_either_way():
+    step, time_s = 2.0, 0.01 * np.arange(2000)
+    rounded = step * np.round(100.0 * np.sin(0.3 * time_s) / step)
+    signals = {'engine_torque': rounded, 'clutch_torque': 100.0 * np.sin(0.3 * time_s)}
+    logs = rounded_again(MeasuredLog(Path('a.csv'), '', time_s, signals))
+    moves = np.array([log.signals['engine_torque'] - rounded for log in logs])
+    assert len(logs) == 2
+    np.testing.assert_allclose(np.abs(moves), 0.5 * step, rtol=1e-9)
+    np.testing.assert_allclose(moves[0], -moves[1])
+    assert all(log.signals['clutch_torque'] is signals['clutch_torque'] for log in logs)

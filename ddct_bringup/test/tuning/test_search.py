@@ -54,6 +54,19 @@ def test_the_same_seed_gives_the_same_trials_and_another_one_others() -> None:
     assert first == again != searched(tuning(seed=6).spec, 4)
 
 
+def test_the_search_follows_the_results_after_the_trials_at_random() -> None:
+    spec, asked = tuning().spec, []
+    for best in (0, 15):
+        study = TuningStudy(spec, {})
+        for batch in range(2):
+            found = study.ask(batch, BATCH).items()
+            study.add([trial(number, spec, each, abs(number - best)) for number, each in found])
+        asked.append(([each.values for each in study.trials], study.ask(2, BATCH)))
+    (tried, first), (also, second) = asked
+    assert tried == also
+    assert first != second
+
+
 def test_values_from_before_are_tried_first_and_unchanged() -> None:
     present = {'proportional_gain': 0.123456789, 'integral_gain': 0.5}
     assert TuningStudy(tuning().spec, present).ask(0, 2)[0] == present
@@ -97,9 +110,10 @@ def test_a_trial_is_read_as_it_was_added(tmp_path: Path) -> None:
     assert study.front() == [0]
 
 
-def trial(number: int, spec: TuningSpec, values: Values) -> Trial:
-    """Return a feasible trial of one run."""
-    row = {'state': 'engaged', **{goal.name: 1.0 + number for goal in spec.objectives}}
+def trial(number: int, spec: TuningSpec, values: Values, result: float = 1.0) -> Trial:
+    """Return a feasible trial of one run; `result` is the value of the first objective."""
+    first, *others = (goal.name for goal in spec.objectives)
+    row = {'state': 'engaged', first: result, **dict.fromkeys(others, 1.0)}
     return Trial(number, values, pa.Table.from_pylist([row]))
 
 

@@ -54,6 +54,11 @@ MESSAGES = {
         'few': [2.0],
         'short': 'abc',
         'count': 3,
+        'letter': 65,
+        'change': -3,
+        'time_ns': 1 << 40,
+        'serial': 1 << 63,
+        'height': 0.5,
     },
 }
 # Fixed and bounded arrays, single bytes and eight-byte fields behind them.
@@ -66,6 +71,11 @@ uint8 covariance_type
 float64[<=3] few
 string<=5 short
 uint32 count
+char letter
+int16 change
+int64 time_ns
+uint64 serial
+float32 height
 {'=' * 80}
 MSG: made_msgs/FixStatus
 int8 NO=-1

@@ -13,6 +13,7 @@ from ddct_plant.graph.sole_publishers import (  # noqa: E402
     CHECK_S,
     PROOF_S,
     SILENCE_S,
+    SolePublishers,
     _Probe,
 )
 from ddct_plant.signals.topics import JOINT_STATES  # noqa: E402
@@ -46,3 +47,17 @@ def test_a_second_of_messages_or_five_of_silence_exclude_a_second_publisher():
     assert PERIOD_S < CHECK_S
     assert seconds_to_exclude_two(messages=True) == PROOF_S == 1.0
     assert seconds_to_exclude_two(messages=False) == SILENCE_S == 5.0
+
+
+def test_a_run_whose_topics_have_one_publisher_each_ends_at_once():
+    ended: list[object] = []
+    node: Any = SimpleNamespace(
+        steady_time=SimpleNamespace(monotonic=lambda: 0.0),
+        resolve_topic_name=lambda name: f'/{name}',
+        every=lambda *_: None,
+        count_publishers=lambda _: 1,
+        get_publishers_info_by_topic=lambda _: [],
+        finish=ended.append,
+    )
+    SolePublishers(node, lambda: None).finish()
+    assert ended == [None]

@@ -143,10 +143,11 @@ def test_control_characters_on_the_command_line_do_not_reach_the_terminal(capsys
 
 
 @pytest.mark.process
-def test_a_reader_that_has_gone_ends_the_program_quietly():
+@pytest.mark.parametrize('size', [1, 100_000], ids=['kept in the buffer', 'written at once'])
+def test_a_reader_that_has_gone_ends_the_program_quietly(size):
     program = (
         'import sys; from ddct_plant.program.command_line import run_program\n'
-        "def work(_): sys.stdin.readline(); print('x' * 100_000); return 0\n"
+        f"def work(_): sys.stdin.readline(); print('x' * {size}); return 0\n"
         "sys.exit(run_program('x', work, []))"
     )
     with subprocess.Popen(
