@@ -71,7 +71,7 @@ def _zero_pair(coefficients: PrintedCoefficients) -> IdentificationCheck:
     )
     predicted, std = predict_left_out(coefficients, *ZERO_PAIR)
     margin = _SIGMAS * float(np.hypot(std, printed.half_unit * np.sqrt(ROUNDING_VARIANCE)))
-    name = f'{" ".join(ZERO_PAIR)} from the other eight, printed {printed.text}'
+    name = f'{" ".join(ZERO_PAIR)} from the other eight, taken as {printed.text}'
     return IdentificationCheck(name, predicted, printed.value - margin, printed.value + margin)
 
 

@@ -9,6 +9,7 @@ from ddct_plant.models.driveline_model import clutch_to_slip, load_to_slip
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.printed import (
     CLUTCH_TO_SLIP,
+    CLUTCH_TO_SLIP_AS_PRINTED,
     LOAD_TO_SLIP,
     PrintedNumber,
     PrintedTransferFunction,
@@ -37,16 +38,26 @@ class PrintedCoefficients:
     """
 
     def __init__(
-        self, p2: PrintedTransferFunction, p3: PrintedTransferFunction = LOAD_TO_SLIP
+        self,
+        p2: PrintedTransferFunction,
+        p3: PrintedTransferFunction = LOAD_TO_SLIP,
+        p2_with_errata: PrintedTransferFunction | None = None,
     ) -> None:
-        """Use the printed P_2 and P_3; raise ParameterError when their poles differ."""
+        """
+        Use the printed P_2 and P_3; raise ParameterError when their poles differ.
+
+        `p2_with_errata` is P_2 as printed where `p2` has its errata corrected.
+        """
         if p2.denominator != ('0', *p3.denominator):
             raise ParameterError(f'{p2.name} and {p3.name} must share their poles, apart from s')
         self.numbers: tuple[tuple[str, PrintedNumber], ...] = tuple(
             [(p2.name, number) for number in p2.numbers()]
             + [(p3.name, number) for number in p3.numbers()[:2]]
         )
-        """Name of the transfer function and printed number of each coefficient, (9,)."""
+        """Name of the transfer function and number of each coefficient, errata corrected, (9,)."""
+        as_printed = (*(p2_with_errata or p2).numbers(), *p3.numbers()[:2])
+        self.texts = tuple(number.text for number in as_printed)
+        """Digits of each coefficient as printed, errata included, (9,)."""
         self._values = np.array([number.value for _, number in self.numbers])
         self._half_units = np.array([number.half_unit for _, number in self.numbers])
 
@@ -83,7 +94,7 @@ class PrintedCoefficients:
         return np.log([engine, shaft, damping, stiffness / corner, stiffness, tau, vehicle])
 
 
-PRINTED = PrintedCoefficients(CLUTCH_TO_SLIP)
+PRINTED = PrintedCoefficients(CLUTCH_TO_SLIP, p2_with_errata=CLUTCH_TO_SLIP_AS_PRINTED)
 """Printed coefficients of the thesis, with the erratum corrected."""
 
 

@@ -32,11 +32,13 @@ class CoefficientFit:
     coefficient: str
     """Label of the coefficient, such as 'zero c'."""
     printed: str
-    """Number as printed."""
+    """Number as printed, an erratum included."""
+    taken: str
+    """Number that the fit takes: the printed one, or an erratum corrected."""
     computed: float
     """Value for the identified driveline."""
     residual_half_units: float
-    """Residual: computed less printed, in half-units of the last printed digit."""
+    """Residual: computed less taken, in half-units of the last printed digit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,6 +96,7 @@ def identify_driveline(coefficients: PrintedCoefficients = PRINTED) -> Identific
     parameters = with_fitted(logarithms)
     rows = zip(
         coefficients.numbers,
+        coefficients.texts,
         computed_coefficients(parameters).tolist(),
         coefficients.residuals(logarithms).tolist(),
         strict=True,
@@ -104,8 +107,8 @@ def identify_driveline(coefficients: PrintedCoefficients = PRINTED) -> Identific
         condition=float(singular.S[0] / singular.S[-1]),
         weakest_direction=singular.Vh[-1],
         coefficients=tuple(
-            CoefficientFit(name, number.label, number.text, computed, residual)
-            for (name, number), computed, residual in rows
+            CoefficientFit(name, number.label, text, number.text, computed, residual)
+            for (name, number), text, computed, residual in rows
         ),
     )
 

@@ -139,7 +139,7 @@ def print_identification(
                 (
                     row.transfer_function,
                     row.coefficient,
-                    row.printed,
+                    _printed(row),
                     text_or_dash(row.computed, '.7g'),
                     f'{round(row.residual_half_units, 2) + 0.0:+.2f}',
                 )
@@ -171,6 +171,12 @@ def print_identification(
         f'Condition number {identification.condition:.0f}; least determined together: {weakest} '
         '(relative changes)'
     )
+
+
+def _printed(row: CoefficientFit) -> str:
+    if row.taken == row.printed:
+        return row.printed
+    return f'{row.printed} (erratum, taken as {row.taken})'
 
 
 def _dash_reason(header: str, row: Sequence[str]) -> str:

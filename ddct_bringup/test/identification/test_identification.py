@@ -78,7 +78,7 @@ def test_every_coefficient_is_met_to_1_1_half_units_of_its_last_digit():
     assert np.abs(best_fit().residuals).max() < 1.1
     for fit, (name, number) in zip(best_fit().coefficients, COEFFICIENTS.numbers, strict=True):
         assert (fit.transfer_function, fit.coefficient) == (name, number.label)
-        residual = (fit.computed - float(fit.printed)) / number.half_unit
+        residual = (fit.computed - float(fit.taken)) / number.half_unit
         assert residual == pytest.approx(fit.residual_half_units, abs=1e-9)
 
 

@@ -31,8 +31,11 @@ def test_json_holds_parameters_coefficients_and_checks(capsys):
     assert len(content['coefficients']) == 9
     for row in content['coefficients']:
         assert set(row) == {
-            'transfer_function', 'coefficient', 'printed', 'computed', 'residual_half_units',
+            'transfer_function', 'coefficient', 'printed', 'taken', 'computed',
+            'residual_half_units',
         }  # fmt: skip
+    corrected = [row for row in content['coefficients'] if row['taken'] != row['printed']]
+    assert [(row['printed'], row['taken']) for row in corrected] == [('334.4', '339.4')]
     assert all(check['passed'] for check in content['checks'])
 
 
@@ -54,7 +57,13 @@ def test_table_in_a_pipe_is_plain_text(capsys):
     assert main([]) == 0
     output = capsys.readouterr().out
     assert output.isascii() and '\x1b' not in output
-    for text in ('halfshaft_stiffness', 'k_sa', '339.4', '+1.04', 'Condition number'):
+    for text in (
+        'halfshaft_stiffness',
+        'k_sa',
+        '334.4 (erratum, taken as 339.4)',
+        '+1.04',
+        'Condition number',
+    ):
         assert text in output
 
 
