@@ -26,6 +26,7 @@ from ddct_controllers.design.h_infinity.uncertainty import (
     PRINTED_W_U,
     WeightedNorms,
     relative_error,
+    shortfall_from_rad_s,
     wear_family,
     weighted_norms,
 )
@@ -96,10 +97,9 @@ def _draw_uncertainty(axes: 'Axes') -> str:
     axes.set(xlim=(omega[0], omega[-1]), xlabel='Frequency, rad/s', ylabel='Magnitude')
     axes.legend(loc='lower left')
     highest = relative_error(nominal, family, omega)
-    short = weight < highest
     return (
         f'Both errors are {highest[0]:.2f} at all frequencies. |W_u| covers them up to '
-        f'{omega[short][0]:.0f} rad/s; above it is up to '
+        f'{shortfall_from_rad_s(PRINTED_W_U, float(highest.max())):.0f} rad/s; above it is up to '
         f'{100.0 * (1.0 - np.min(weight / highest)):.1f} % short of inequality (3.3).'
     )
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Figures 2.11 to 2.28, 3.10 to 3.19, 4.3 to 4.8 and 5.1: w_d, w_sr and A_x of each group."""
 
+import functools
 from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING
@@ -11,7 +12,12 @@ import numpy as np
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.reproduction.figures.figure_groups import FIGURE_GROUPS, FigureGroup
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure, draw_over_time
+from ddct_bringup.reproduction.numbers.gate import judge
+from ddct_bringup.reproduction.numbers.gate_tables import computed_text
+from ddct_bringup.reproduction.numbers.number_files import thesis_numbers
+from ddct_bringup.reproduction.numbers.thesis_number import ThesisNumber
 from ddct_bringup.reproduction.study_run import StudyRun, thesis_run
+from ddct_bringup.reproduction.values.closed_loop_values import FIGURE_CLAIMS
 from ddct_bringup.thesis.table_5_1 import CALIBRATED, PREDICTED, thesis_row
 from ddct_controllers.design.drawing.line_styles import REFERENCE_LINE
 from ddct_controllers.registry import controller_label
@@ -75,10 +81,39 @@ def _draw(axes: 'Axes', group: FigureGroup, quantity: str, own: Sequence[str]) -
     draw_over_time(
         axes, _LABELS[quantity], (_FIRST_S, end_s), lines, {'reference': REFERENCE_LINE}
     )
-    return (
-        f'Thesis: {group.thesis_claim}. {group.verdict}. {_scores(group, runs, quantity)}.'
-        + _table_5_1(group, quantity)
+    return f'{_claim(group, quantity)} {_scores(group, runs, quantity)}.' + _table_5_1(
+        group, quantity
     )
+
+
+def _claim(group: FigureGroup, quantity: str) -> str:
+    """Return the claim and its verdicts below the first figure of a group, below others where."""
+    first = group.numbers[0]
+    if quantity != next(iter(_LABELS)):
+        return f'The claim of the thesis and its verdict stand below Figure {first}.'
+    verdicts = [_verdict(name) for name in group.listed] or [
+        'The list of numbers has no such claim'
+    ]
+    return ' '.join(
+        f'{sentence}.'
+        for sentence in (f'Thesis: {group.thesis_claim}', *verdicts, group.remark)
+        if sentence
+    )
+
+
+def _verdict(name: str) -> str:
+    """Return the verdict of `thesis numbers` on a claim, with the values behind it."""
+    number = next(number for number in _listed() if number.id == name)
+    (row,) = judge((number,), {name: FIGURE_CLAIMS[name]()})
+    return (
+        f'{row.outcome.capitalize()} in the list of numbers: {number.item}: "{number.printed}", '
+        f'ours {computed_text(row)}'
+    )
+
+
+@functools.cache
+def _listed() -> tuple[ThesisNumber, ...]:
+    return thesis_numbers()
 
 
 def _scores(group: FigureGroup, runs: dict[str, StudyRun], quantity: str) -> str:

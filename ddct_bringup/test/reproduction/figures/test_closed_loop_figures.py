@@ -104,6 +104,14 @@ def test_the_time_axis_ends_with_the_longest_run(monkeypatch):
     assert axes.get_xlim() == (0.5, max(ends)) == (0.5, THESIS_SCENARIO.duration_s)
 
 
+def test_first_figure_of_a_group_has_the_verdicts_of_the_list_of_numbers():
+    tracking = drawing('3.10')[1]
+    assert 'Predicted hit in the list of numbers: Base: the controller that tracks' in tracking
+    assert 'Predicted miss in the list of numbers: Base: w_sr of Hinf2: "huge"' in tracking
+    assert '"not good", ours 2 of 9 lower in both' in drawing('2.17')[1]
+    assert 'stand below Figure 2.17' in drawing('2.18')[1]
+
+
 def torsion_std_rpm(controller: str, architecture: str) -> float:
     return thesis_run(controller, architecture, 1.0).metrics['torsion_speed_std_rpm']
 
