@@ -120,7 +120,7 @@ def test_a_killed_recording_is_invalid_with_its_number_of_steps_and_without_figu
     killed, capsys
 ):
     steps = read_bag(killed).trajectory.steps
-    reason = f'incomplete: {steps} of 200 steps'
+    reason = f'incomplete: {steps} of 200 steps: if its recorder still runs, stop it first'
     assert score.main([str(killed), '--json', '-']) == 1
     captured = capsys.readouterr()
     (run,) = json.loads(captured.out)['runs']

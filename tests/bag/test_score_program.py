@@ -222,7 +222,9 @@ def test_a_cut_bag_is_reported_and_the_others_are_scored(bags, trajectory, capsy
     whole, broken = runs_in(captured.out)
     assert whole['valid']
     assert (broken['controller'], broken['valid']) == ('pi', False)
-    assert broken['reason'] == 'incomplete: 60 of 60 steps'
+    assert broken['reason'].startswith(
+        'incomplete: 60 of 60 steps: if its recorder still runs, stop'
+    )
     assert set(broken['metrics']) == set(whole['metrics'])
     assert set(broken['metrics'].values()) | set(broken['figures'].values()) == {None}
     assert 'incomplete: 60 of 60 steps' in captured.err

@@ -51,6 +51,29 @@ def test_a_recorder_that_recorded_nothing_names_the_cause(graph_of: GraphOf) -> 
     assert graph.failures()['recorder'].startswith(words)
 
 
+def test_a_recorder_that_got_no_whole_tick_names_the_topics_that_it_lacks(
+    graph_of: GraphOf,
+) -> None:
+    graph = graph_of(plan())
+    recorder: Any = graph.add('recorder', {'nodes': [n for n in NODE_NAMES if n != 'clutch']})
+    graph.add_all(without=['clutch'])
+    graph.spin_until(lambda: recorder._buffer.missing() == ['clutch/torque'], 'all other topics')
+    recorder.close()
+    words = 'no whole tick came, for want of clutch/torque: see the logs of the nodes'
+    assert words in graph.failures()['recorder']
+
+
+def test_a_recorder_warns_of_a_run_that_ended_early(
+    graph_of: GraphOf, capfd: pytest.CaptureFixture[str]
+) -> None:
+    graph = graph_of(plan())
+    graph.add_all()
+    recorder: Any = graph.nodes['recorder']
+    graph.spin_until(lambda: recorder._bag.steps == 9, 'the tick')
+    recorder.close()
+    assert f'{graph.folder}: ended after 9 of 100 steps: not valid' in capfd.readouterr().err
+
+
 @pytest.mark.parametrize(('node', 'key'), [('controller', 'controller'), ('driveline', 'steps')])
 def test_a_run_info_without_what_the_bag_needs_is_named(
     graph_of: GraphOf, monkeypatch: pytest.MonkeyPatch, node: str, key: str

@@ -87,7 +87,9 @@ def test_score_reads_what_a_killed_recorder_wrote_and_gives_no_figures(
     assert score.main([str(bag), '--json', '-']) == 1
     (run,) = json.loads(capfd.readouterr().out)['runs']
     assert (run['valid'], run['state'], {*run['figures'].values()}) == (False, 'invalid', {None})
-    assert run['reason'] == f'incomplete: {steps} of 360000 steps'
+    assert run['reason'] == (
+        f'incomplete: {steps} of 360000 steps: if its recorder still runs, stop it first'
+    )
 
 
 @pytest.mark.parametrize(

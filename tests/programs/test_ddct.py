@@ -67,7 +67,7 @@ def test_node_starts_the_nodes_alone(
     with pytest.raises(SystemExit):
         node.main(['loda'])
     assert capsys.readouterr().err == (
-        'ddct node: unknown node loda: did you mean load?: see ddct node --help\n'
+        'ddct node: unknown node loda: did you mean load? See ddct node --help\n'
     )
 
 
@@ -99,10 +99,13 @@ def test_programs_start_without_the_slow_parts_of_scipy() -> None:
 @pytest.mark.parametrize(
     ('arguments', 'line'),
     [
-        (['comparee'], 'unknown program comparee: did you mean compare?'),
-        (['driveline'], 'unknown program driveline: did you mean node driveline?'),
-        ([], 'the following arguments are required: PROGRAM'),
-        (['--nothing'], 'the following arguments are required: PROGRAM'),
+        (['comparee'], 'unknown program comparee: did you mean compare? See'),
+        (
+            ['driveline'],
+            'unknown program driveline: to start this node give ddct node driveline: see',
+        ),
+        ([], 'the following arguments are required: PROGRAM: see'),
+        (['--nothing'], 'the following arguments are required: PROGRAM: see'),
     ],
 )
 def test_an_unknown_program_is_one_line(
@@ -111,7 +114,7 @@ def test_an_unknown_program_is_one_line(
     with pytest.raises(SystemExit) as end:
         ddct.main(arguments)
     assert end.value.code == 2
-    assert capsys.readouterr().err == f'ddct: {line}: see ddct --help\n'
+    assert capsys.readouterr().err == f'ddct: {line} ddct --help\n'
 
 
 def test_it_passes_on_the_arguments_and_the_exit_code(

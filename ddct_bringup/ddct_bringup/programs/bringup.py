@@ -83,7 +83,7 @@ def _show(run: 'shell.ScoredRecording', folder: Path) -> None:
 
 def _print_notes(run: 'shell.ScoredRecording', folder: Path) -> None:
     """Print the logs with warnings and the summary of a real-time run on standard error."""
-    shell.print_logs_with_warnings(PROGRAM, [folder])
+    shell.print_kept_logs(PROGRAM, [folder])
     if run.recording and not run.recording.facts.lockstep:
         _complain(shell.realtime_summary(run.recording))
 

@@ -84,9 +84,9 @@ def _compare(argv: list[str]) -> int:
         )
     except shell.NoValidRunError:
         left = options.out.with_name(f'{options.out.name}{shell.PARTIAL}')
-        shell.print_logs_with_warnings(PROGRAM, [left / plan.name for plan in plans])
+        shell.print_kept_logs(PROGRAM, [left / plan.name for plan in plans])
         raise
-    shell.print_logs_with_warnings(PROGRAM, [options.out / plan.name for plan in plans])
+    shell.print_kept_logs(PROGRAM, [options.out / plan.name for plan in plans])
     *names, last = shell.FILES
     _complain(f'bags, {", ".join(names)} and {last} are in {options.out}')
     return _failures(plans, scored, unusable)

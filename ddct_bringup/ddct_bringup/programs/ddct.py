@@ -52,7 +52,11 @@ def _ddct(argv: list[str]) -> int:
         parser.add_argument('program', metavar='PROGRAM', help='one of those above')
         name = parser.parse_args(argv[:1]).program
         node = name in node_names()
-        hint = f'did you mean node {name}?' if node else close_name(name, sorted(known))
+        hint = (
+            f'to start this node give ddct node {name}'
+            if node
+            else close_name(name, sorted(known))
+        )
         parser.error(f'unknown program {name}: {hint}')
     if argv[0] == _RUNS_GRAPHS and _WITHOUT_NODES.isdisjoint(argv):
         require_ros()

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Node `recorder`: writes every tick into a bag and acknowledges it."""
 
+import math
 from functools import partial
 from typing import Any, ClassVar
 
@@ -98,8 +99,8 @@ class RecorderNode(GraphNode):
         """
         Finish the bag and write `timing.json`.
 
-        End the node with a DdctError when nothing was recorded, or a second node published
-        a topic.
+        Warn of a run that ended early. End the node with a DdctError when nothing was recorded,
+        or a second node published a topic.
         """
         try:
             self._bag.write_ticks(self._buffer.drain())
@@ -107,6 +108,7 @@ class RecorderNode(GraphNode):
                 folder = self._recording.folder
                 raise DdctError(f'{folder}: nothing was recorded, {self._waiting_for()}')
             self._bag.close()
+            self._warn_of_early_end()
             self._wall_clock.write(
                 self._recording.folder,
                 self._bag.steps,
@@ -215,10 +217,27 @@ class RecorderNode(GraphNode):
                 f'no run_info came from {", ".join(missing)}: start them, or leave them out of '
                 '--ros-args -p nodes:=[...]'
             )
+        if lacking := self._buffer.missing():
+            return (
+                f'no whole tick came, for want of {", ".join(lacking)}: see the logs of the nodes '
+                'that publish them, and of those before them'
+            )
         return (
             'no whole tick came: start it first, or driveline with '
             '--ros-args -p require_recorder:=true'
         )
+
+    def _warn_of_early_end(self) -> None:
+        """Warn that steps are missing, unless the engine has stalled or over-revved."""
+        steps, planned = self._bag.steps, self._nodes.steps
+        if steps >= planned:
+            return
+        cdr = self._buffer.last.get(JOINT_STATES.name)
+        speed = _message(JOINT_STATES, cdr).velocity[0] if cdr else math.nan
+        if not self.settings.scenario.end_cause(speed):
+            self.get_logger().warning(
+                f'{self._recording.folder}: ended after {steps} of {planned} steps: not valid'
+            )
 
     def _warn_of_missing_nodes(self) -> None:
         self._patience.cancel()

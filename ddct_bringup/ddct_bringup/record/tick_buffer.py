@@ -97,6 +97,16 @@ class TickBuffer:
                 tick.pop(topic, None)
         return self._ready()
 
+    @property
+    def last(self) -> Tick:
+        """Messages of the last tick that was returned; empty before the first."""
+        return self._last[1]
+
+    def missing(self) -> list[str]:
+        """Return the topics without a message of the step that is due, if it has any message."""
+        tick = self._pending.get(self._next_step, {})
+        return [topic for topic in self.topics if tick and topic not in tick]
+
     def drain(self) -> list[tuple[int, Tick]]:
         """Return the remaining ticks when recording ends; only real time keeps incomplete ones."""
         return [] if self.wait_for_all else self._ready(over=True)

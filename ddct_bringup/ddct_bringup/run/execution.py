@@ -125,14 +125,24 @@ def _print_loop_summary(plan: RunPlan) -> None:
 
 
 def kept_logs(folder: Path) -> list[Path]:
-    """Return the paths of the logs with warnings in the folder of a run's bag."""
+    """Return the paths of the logs that a run has left in the folder of its bag."""
     return sorted((folder / WORK_FOLDER).glob('*.log'))
 
 
-def print_logs_with_warnings(program: str, folders: Iterable[Path]) -> None:
-    """Print the paths of the logs with warnings of these run folders on standard error, if any."""
-    if logs := [str(log) for folder in folders for log in kept_logs(folder)]:
-        print(f'{program}: warnings are in {", ".join(logs)}', file=sys.stderr)
+def print_kept_logs(program: str, folders: Iterable[Path]) -> None:
+    """Print on standard error where these run folders have logs: warnings, and of failed runs."""
+    warned: list[str] = []
+    failed: list[str] = []
+    for folder in folders:
+        logs = kept_logs(folder)
+        if all(map(_warns, logs)):
+            warned += map(str, logs)
+        else:
+            failed.append(f'{folder / WORK_FOLDER}')
+    if warned:
+        print(f'{program}: warnings are in {", ".join(warned)}', file=sys.stderr)
+    if failed:
+        print(f'{program}: logs of what failed are in {", ".join(failed)}', file=sys.stderr)
 
 
 def _keep_warnings(work: Path) -> None:
@@ -140,10 +150,15 @@ def _keep_warnings(work: Path) -> None:
     for folder in (work / name for name in SIDES):
         shutil.rmtree(folder, ignore_errors=True)
     for path in work.iterdir():
-        if path.suffix != '.log' or not _WARNING.search(path.read_bytes()):
+        if path.suffix != '.log' or not _warns(path):
             path.unlink()
     if not any(work.iterdir()):
         work.rmdir()
+
+
+def _warns(log: Path) -> bool:
+    """Return whether a node warned or failed in its log."""
+    return bool(_WARNING.search(log.read_bytes()))
 
 
 def _execute_processes(

@@ -50,7 +50,8 @@ def score_run(
     """
     facts = recording.facts
     if recording.unfinished:
-        return run_without_score(bag, facts, incomplete(recording))
+        reason = f'{incomplete(recording)}: if its recorder still runs, stop it first'
+        return run_without_score(bag, facts, reason)
     reason = why_invalid(recording)
     engagement = engagement_of(recording, timing)
     metrics = metrics_of(engagement)

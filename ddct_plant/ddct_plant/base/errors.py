@@ -52,15 +52,20 @@ class ParameterError(DdctError, ValueError):
     """A parameter, option or scenario key has a value that cannot be used."""
 
 
-_ABSOLUTE = re.compile(
-    r"""(?<![\w.])(?:/(?:[^\s/:'"()<>]+/)+|[A-Za-z]:[/\\](?:[^\s/\\:'"()<>]+[/\\])+)"""
+_FOLDERS = re.compile(
+    r"""
+    (?P<ros>:=\S+|\b(?:nodes?|publishers:)(?:\ (?:and\ )?/\S+)+|(?<!\S)/\S*/clock(?![\w.]))
+    |(?<![\w.])(?:/(?:[^\s/:'"()<>]+/)+|[A-Za-z]:[/\\](?:[^\s/\\:'"()<>]+[/\\])+)
+    """,
+    re.VERBOSE,
 )
-"""Folders of an absolute path in a text, of Windows too."""
+"""Folders of an absolute path in a text, of Windows too; names of ROS are matched to be kept:
+those behind a remap, of nodes, and of the clock of a graph."""
 
 
 def without_folders(text: str) -> str:
     """Return the reason of a run, as a result keeps it, with files named without their folders."""
-    return _ABSOLUTE.sub('', text)
+    return _FOLDERS.sub(lambda found: found['ros'] or '', text)
 
 
 FOREIGN_FAILURES = (Exception, SystemExit)

@@ -109,7 +109,8 @@ class ProgramParser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """End the program with the exit code 2 and one line on standard error."""
-        self.exit(_USAGE, f'{self.prog}: {printable(message)}: see {self.prog} --help\n')
+        see = ' See' if message.endswith('?') else ': see'
+        self.exit(_USAGE, f'{self.prog}: {printable(message)}{see} {self.prog} --help\n')
 
     def _print_message(self, message: str, file: Any = None) -> None:
         """Write help or version; raise OSError where it fails, which argparse would ignore."""

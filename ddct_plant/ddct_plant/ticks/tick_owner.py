@@ -132,7 +132,11 @@ class TickOwner:
                 f'the nodes which publish {" and ".join(have_run)} have already run with another '
                 'driveline, so stop all nodes and start the graph again'
             )
-        return 'check that the nodes which publish them are running'
+        nodes = [f'/{topic.rpartition("/")[0]}' for topic in missing]
+        return (
+            f'check that {", ".join(nodes)} and what they wait for run, and read their logs: a '
+            'node that refused a message says why'
+        )
 
     def _awaited_at(self, step: int) -> tuple[str, ...]:
         return self._plan.topics

@@ -84,3 +84,12 @@ def test_the_reason_of_a_run_names_files_without_folders():
     )
     expected = r'controller file mine.yaml: line 2: \x1b\x1b is no name, in y.py line 3'
     assert without_folders(windows) == expected
+
+
+def test_the_reason_of_a_run_keeps_the_names_of_ros():
+    """So a command in it can be given as it stands."""
+    text = (
+        'the nodes /car/clutch and /hand/clutch: stop one; a graph with /car/clock runs: give '
+        '--ros-args -r __ns:=/car -r /clock:=/car/clock, or wait for /tmp/x/clock.yaml'
+    )
+    assert without_folders(text) == text.replace('/tmp/x/', '')

@@ -123,7 +123,10 @@ def test_a_false_stamp_before_the_first_step_explains_no_silence_after_it(lockst
     lockstep.now = 1.01
     lockstep.owner.watch()
     (end,) = lockstep.ends
-    assert str(end).endswith('check that the nodes which publish them are running')
+    assert str(end).endswith(
+        'check that /engine, /load, /clutch and what they wait for run, and read their logs: a '
+        'node that refused a message says why'
+    )
 
 
 def test_lockstep_never_steps_on_a_reply_to_another_tick(lockstep):

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from ddct_bringup.reproduction.figures import command as figures_command
     from ddct_bringup.reproduction.numbers import command as numbers_command
     from ddct_bringup.reproduction.studies import command as studies_command
-    from ddct_bringup.run.execution import print_logs_with_warnings, run_with_progress
+    from ddct_bringup.run.execution import print_kept_logs, run_with_progress
     from ddct_bringup.run.options import (
         controllers_of,
         metrics_of,
