@@ -47,7 +47,7 @@ class Controller(ABC):
     written_in: str = ''
     """Place of its code, as `ControllerSpec.written_in`; set by the registry."""
     method_names: ClassVar[Mapping[str, str]] = MappingProxyType({})
-    """Names of its functions in another language, by the methods' names, for errors."""
+    """Names of its author's functions where they differ, by the methods' names, for errors."""
     preview_steps: int = 0
     """Number P of steps beyond the present one for which it receives the reference."""
     commands_engine: bool = False

@@ -33,11 +33,11 @@ def place_of_method(controller: Controller, name: str) -> str:
     For one that is not in Python: its source, such as a key of a YAML file, and the method's name
     there.
     """
+    own_name = controller.method_names.get(name)
     if place := controller.written_in:
-        own_name = controller.method_names.get(name)
         return f'{own_name} of {place}' if own_name else place
     try:
-        method = inspect.unwrap(getattr(controller, name))
+        method = inspect.unwrap(getattr(controller, own_name or name))
         return f'{inspect.getsourcefile(method)} line {inspect.getsourcelines(method)[1]}'
     except (OSError, TypeError):  # no source: compiled, or typed in
         return f'{type(controller).__module__}.{type(controller).__name__}.{name}'

@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """A learnt policy as a controller: numbers in, torques out. It needs numpy alone."""
 
+import reprlib
 from abc import abstractmethod
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -56,6 +58,8 @@ class PolicyController(Controller):
     overrides `reset`; one that commands the engine sets `commands_engine`.
     """
 
+    method_names: ClassVar[Mapping[str, str]] = MappingProxyType({'update': 'act'})
+
     @abstractmethod
     def act(self, observation: np.ndarray) -> Sequence[float] | np.ndarray:
         """
@@ -68,7 +72,20 @@ class PolicyController(Controller):
         """Return to the state before the first update; here there is none."""
 
     def update(self, measurement: Measurement) -> Command:
-        """Return the command of `act` for what is measured."""
+        """Return the command of `act` for what is measured; raise TypeError for other answers."""
         action: Any = self.act(observation_of(measurement))
-        engine_torque = float(action[1]) if self.commands_engine else None
-        return Command(float(action[0]), engine_torque=engine_torque)
+        try:
+            clutch_torque, *others = map(float, action)
+        except (TypeError, ValueError):
+            raise TypeError(self._unusable(action)) from None
+        if len(others) != self.commands_engine:
+            raise TypeError(self._unusable(action))
+        return Command(clutch_torque, engine_torque=others[0] if others else None)
+
+    def _unusable(self, action: object) -> str:
+        needed = (
+            'two numbers in a list, as commands_engine is set'
+            if self.commands_engine
+            else 'one number in a list, or two with commands_engine set'
+        )
+        return f'act must return {needed}, got {" ".join(reprlib.repr(action).split())}'

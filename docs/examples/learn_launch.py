@@ -6,8 +6,8 @@ Train a small policy to engage the clutch, by a cross-entropy search with numpy 
 It takes a minute, and writes the policy as a controller file, by default `learnt.py`.
 """
 
+import argparse
 import inspect
-import sys
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -47,8 +47,14 @@ def reward_of(environment: Any, policy: Learnt, seeds: Iterable[int]) -> float:
     return float(np.mean(rewards))
 
 
-def search(environment: Any, generations: int) -> np.ndarray:
-    """Return the weights around which the best of the last generation are."""
+def write(file: Path, weights: np.ndarray) -> None:
+    """Write the policy with these weights as a controller file."""
+    source = inspect.getsource(Learnt).replace('np.zeros(6)', f'np.array({weights.tolist()})')
+    file.write_text(f'{HEAD}\n{source}', encoding='utf-8')
+
+
+def search(environment: Any, generations: int, file: Path) -> None:
+    """Search weights; after each generation write those around which its best are."""
     random, policy = np.random.default_rng(0), Learnt()
     mean, deviation = np.zeros(6), 0.7 * np.ones(6)
     for generation in range(generations):
@@ -59,13 +65,20 @@ def search(environment: Any, generations: int) -> np.ndarray:
             rewards.append(reward_of(environment, policy, seeds))
         best = tried[np.argsort(rewards)[-BEST:]]
         mean, deviation = best.mean(axis=0), best.std(axis=0) + 0.02
+        write(file, mean)
         print(f'generation {generation + 1}: best reward {max(rewards):.2f}', flush=True)
-    return mean
 
 
-file = Path(sys.argv[1] if len(sys.argv) > 1 else 'learnt.py')
+parser = argparse.ArgumentParser(description=__doc__)
+parser.add_argument('file', nargs='?', type=Path, default=Path('learnt.py'))
+parser.add_argument('generations', nargs='?', type=int, default=GENERATIONS)
+given = parser.parse_args()
+file = given.file
+if file.suffix != '.py' or not file.parent.is_dir():
+    parser.error(f'{file}: give a file that ends with .py, in a folder that exists')
+if given.generations < 1:
+    parser.error('generations: give at least 1')
+# Without the checker of Gymnasium, which would look at each step.
 environment = gymnasium.make('ddct_bringup.gym:ddct/Launch-v0', disable_env_checker=True)
-weights = search(environment, int(sys.argv[2]) if len(sys.argv) > 2 else GENERATIONS)
-source = inspect.getsource(Learnt).replace('np.zeros(6)', f'np.array({weights.tolist()})')
-file.write_text(f'{HEAD}\n{source}', encoding='utf-8')
+search(environment, given.generations, file)
 print(f'{file}: judge it by ddct benchmark {file} --quick --out results/learnt')

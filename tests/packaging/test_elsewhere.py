@@ -89,8 +89,8 @@ def test_programs_end_well_and_the_graph_is_refused_in_one_line(outcome: Outcome
     assert (headless, graph) == ([0, 0, 0], 1)
     (line,) = (each for each in outcome.complaints if 'graph' in each)
     assert line == (
-        'ddct: the graph and its nodes run on Linux alone, and this is win32: run headless, as '
-        'with --headless'
+        'ddct compare: the graph and its nodes run on Linux alone, and this is win32: run '
+        'headless, as with --headless'
     )
     assert not (outcome.place / 'graph').exists()
 

@@ -205,6 +205,14 @@ def test_a_node_without_ros_names_what_is_missing_and_the_page_to_read(
     )
 
 
+def test_a_graph_without_ros_is_refused_by_the_program_that_runs_it(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr('importlib.util.find_spec', lambda name: None)
+    assert ddct.main(['compare', '--controllers', 'pi', '--out', 'runs']) == 1
+    assert capsys.readouterr().err.startswith('ddct compare: the graph and its nodes need ROS 2')
+
+
 def test_it_imports_nothing_heavy_itself() -> None:
     code = (
         'import sys; from ddct_bringup.programs.ddct import main\n'

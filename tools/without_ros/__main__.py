@@ -6,6 +6,7 @@ Install the packages by pip into an empty environment, and use them there, on an
 It needs Python alone: `python tools/without_ros`. It ends with an error at what does not work.
 """
 
+import argparse
 import os
 import shutil
 import subprocess
@@ -57,6 +58,7 @@ COMMANDS = (
 
 def main() -> int:
     """Try the packages in a temporary folder; return the exit code."""
+    argparse.ArgumentParser(prog='python tools/without_ros', description=__doc__).parse_args()
     with tempfile.TemporaryDirectory(prefix='ddct_without_ros_') as made:
         try:
             for line in tried(Path(made)):

@@ -23,7 +23,7 @@ from ddct_plant.signals.topics import (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Trajectory:
     """
     Signals of a run at the stamps t_0..t_N; row k is step k, so N + 1 rows, all SI.
@@ -40,6 +40,11 @@ class Trajectory:
     Values by signal name: (N+1,) or (N+1, n) numbers, or N + 1 texts; only signals of this
     run.
     """
+
+    def __repr__(self) -> str:
+        """Return the number of steps and the names of the signals."""
+        steps = max(map(len, self.signals.values()), default=0)
+        return f'<Trajectory of {steps} steps: {", ".join(self.signals)}>'
 
     @classmethod
     def of_columns(cls, columns: Mapping[str, Sequence[Any] | np.ndarray]) -> 'Trajectory':

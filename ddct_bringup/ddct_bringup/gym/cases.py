@@ -14,6 +14,7 @@ from ddct_bringup.campaign.rows import SEED
 from ddct_bringup.campaign.specification.distributions import Distribution
 from ddct_bringup.campaign.specification.parts import GRID, RANDOM, SAMPLES, VARY, samples_of
 from ddct_bringup.run.run_base import RunBase
+from ddct_plant.scenario.case import require_spelt
 from ddct_plant.scenario.settings import RunSettings
 
 _SENSORS = 'sensors'
@@ -59,4 +60,5 @@ class DrawnCases:
 
     def settings(self, case: Mapping[str, Any]) -> RunSettings:
         """Return the settings of the run of a case; raise DdctError where it cannot be built."""
+        require_spelt(case)
         return self.base.at({**self.common, **case}, drawn=self.vary)

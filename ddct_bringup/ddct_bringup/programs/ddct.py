@@ -59,11 +59,18 @@ def _ddct(argv: list[str]) -> int:
         )
         parser.error(f'unknown program {name}: {hint}')
     if argv[0] == _RUNS_GRAPHS and _WITHOUT_NODES.isdisjoint(argv):
-        require_ros()
-        # Imported here: what is imported before `run_program` cannot be interrupted without a
-        # traceback.
-        processes.start_server()
+        failed = run_program(f'{PROGRAM} {argv[0]}', _start_server, argv[1:])
+        if failed:
+            return failed
     return start(known[argv[0]], argv[1:])
+
+
+def _start_server(_: list[str]) -> int:
+    require_ros()
+    # Imported here: what is imported before `run_program` cannot be interrupted without a
+    # traceback.
+    processes.start_server()
+    return 0
 
 
 def _listing(known: Mapping[str, EntryPoint]) -> str:

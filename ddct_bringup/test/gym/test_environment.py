@@ -117,6 +117,58 @@ def test_an_observation_has_the_measured_numbers_in_the_order_of_their_names() -
     assert named['time_s'] == pytest.approx(environment.settings_of({}).scenario.control_start_s)
 
 
+def test_an_episode_that_is_over_or_an_unusable_action_or_reward_is_refused() -> None:
+    environment = made(set=SHORT, vary={})
+    environment.reset(seed=0)
+    for action in ([np.nan], 1.0, [1.0, 2.0], None, 'no', [1e200]):
+        with refused(ParameterError, 'action') as caught:
+            environment.step(action)
+        assert 'give 1 finite number in a list, or 2 with two_input=True' in str(caught.value)
+    played(environment, WithMemory(), seed=0)
+    assert str(environment.trajectory).startswith('<Trajectory of 131 steps: ')
+    with pytest.raises(DdctError, match='the run is over: call reset'):
+        environment.step([0.0])
+    for reward in (lambda period: None, lambda period: np.nan):
+        environment = made(set=SHORT, vary={}, reward=reward)
+        environment.reset(seed=0)
+        with refused(ParameterError, 'reward'):
+            environment.step([0.0])
+    with refused(ParameterError, 'reward'):
+        made(reward=3)
+
+
+def test_a_case_of_reset_is_checked_as_that_of_a_run() -> None:
+    environment = made(set=SHORT)
+    for options, meant in (({'cases': {}}, 'case'), ({'case': {'wear_gian': 0.7}}, 'wear_gain')):
+        with pytest.raises(ParameterError, match=f'did you mean {meant}?'):
+            environment.reset(seed=0, options=options)
+    with pytest.warns(UserWarning, match='is it in another unit'):
+        environment.reset(seed=0, options={'case': {'vehicle.mass_kg': 1.5}})
+
+
+def test_an_unusable_answer_of_a_policy_is_placed_in_its_own_act() -> None:
+    class Broken(PolicyController):
+        answer: Any
+
+        def act(self, observation: np.ndarray) -> Any:
+            return self.answer
+
+    line = Broken.act.__code__.co_firstlineno
+    settings = made(set=SHORT, vary={}).settings_of({})
+    for answer, words in (
+        (None, 'act must return one number in a list, or two with commands_engine set, got None'),
+        (1.0, 'got 1.0'),
+        ([1.0, 2.0], 'got [1.0, 2.0]'),
+        ([np.nan], 'is nan'),
+    ):
+        policy = Broken()
+        policy.answer = answer
+        with pytest.raises(DdctError) as caught:
+            run_headless(settings, policy)
+        assert words in str(caught.value)
+        assert f'test_environment.py line {line}' in str(caught.value)
+
+
 def test_what_cannot_be_used_is_refused_with_its_key() -> None:
     with refused(ParameterError, 'preview_steps'):
         made(preview_steps=-1)
@@ -124,7 +176,3 @@ def test_what_cannot_be_used_is_refused_with_its_key() -> None:
         made(vary={'wear_gain': {'distribution': 'uniform', 'low': 0.7}})
     with pytest.raises(DdctError, match='reset'):
         made(vary={}).step(np.zeros(1))
-    environment = made(set=SHORT, vary={})
-    environment.reset(seed=0)
-    with pytest.raises(DdctError, match='nan'):
-        environment.step(np.array([np.nan]))

@@ -86,16 +86,16 @@ def unit(subject: Subject) -> str:
     response = subject.response
     found = f'a step of the reference is followed to {response.followed:.0%} after 1 s'
     if response.diverges:
-        found, what, factor = 'the loop is unstable', '1/9.55', RAD_S_PER_RPM
+        found, what, factor = 'the loop is unstable', 'smaller', RAD_S_PER_RPM
     elif response.followed < HALF:
-        what, factor = '9.55', RPM_PER_RAD_S
+        what, factor = 'larger', RPM_PER_RAD_S
     else:
         return found
     other = step_response(subject.settings, subject.make, factor)
     if other.diverges or other.followed < WELL:
-        return f'{found}, and {what} of the torque does not make it a good loop'
+        return f'{found}; a torque 9.55 times {what} is no better: the unit is not the cause'
     raise CheckFailedError(
-        f'{found}; with {what} of its torque the loop is stable and follows to '
+        f'{found}; with a torque 9.55 times {what} the loop is stable and follows to '
         f'{other.followed:.0%}. That is 30/pi, rpm in a rad/s: look at the units in '
         f'{place_of_method(subject.sample, "update")}; slip_error_rpm is in rpm, the speeds and '
         'slip_reference are in rad/s. If they are right, change the gain'

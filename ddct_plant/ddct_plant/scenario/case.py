@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The case of a run: values that its plant alone has, by key, as options and files give them."""
 
+import difflib
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -16,6 +17,7 @@ from ddct_plant.scenario.choices.scenarios import Choice
 from ddct_plant.scenario.choices.settings import SETTINGS
 from ddct_plant.scenario.content import flat, scenario_content
 from ddct_plant.scenario.file import ScenarioFile
+from ddct_plant.scenario.key_names import scenario_options
 from ddct_plant.scenario.nouns.places import Places
 from ddct_plant.scenario.overrides import parsed_override
 from ddct_plant.scenario.scenario import Scenario
@@ -94,8 +96,19 @@ class CaseOf:
         return None if true == self.known else true
 
 
+def require_spelt(keys: Iterable[str]) -> None:
+    """Raise ParameterError for a key that is nearly one of OF_CASE."""
+    for key in keys:
+        if '.' in key or key in SETTINGS or key in scenario_options():
+            continue
+        if close := difflib.get_close_matches(key, OF_CASE, n=1, cutoff=0.8):
+            raise ParameterError(f'unknown key {key}: did you mean {close[0]}?', key=key)
+
+
 def require_of_case(keys: Iterable[str]) -> None:
-    """Raise ParameterError for a key that controllers know in any run."""
+    """Raise ParameterError for a key that controllers know in any run, or that is misspelt."""
+    keys = [*keys]
+    require_spelt(keys)
     for key in keys:
         section = key.partition('.')[0]
         if section not in _ALWAYS_KNOWN:

@@ -35,7 +35,9 @@ from ddct_bringup.evaluation.summary import GroupSummary, PairSummary, Summary
 from ddct_plant.program.table import Weight
 
 _NAME = Weight.IDENTIFYING
-_SETS = ('development', 'held out')
+_STATES_OF = {'development': Weight.DETAIL, 'held out': Weight.NEEDED}
+"""How much the states other than engaged matter, by set of cases."""
+_SETS = tuple(_STATES_OF)
 _TOO_FEW = 'too few runs have a value'
 _QUANTITY = Column('quantity', number=False, weight=_NAME, symbols=True)
 _CONTROLLER = Column('controller', number=False, weight=_NAME)
@@ -146,7 +148,7 @@ def _often(of: _Judged) -> Table:
         columns += [
             Column('success', form='.1%', group=group),
             Column('95 % interval', group=group),
-            Column('other states', number=False, weight=Weight.DETAIL, group=group),
+            Column('other states', number=False, weight=_STATES_OF[group], group=group),
         ]
     rows = [
         (
