@@ -51,7 +51,7 @@ OF_CAMPAIGN = {'car', 'controllers', 'csv', 'drive', 'handover', 'scenario'}
 OF_SCENARIO = {'base', 'car', 'csv', 'drive'}
 OF_CONTROLLER = {'c_library.file', 'fmu.file', 'with_options.controller'}
 OF_RUN = {'controller', 'settings.handover'}
-"""Keys that name files, which docs/use/security.md lists too."""
+"""Keys that name files, which docs/use/live.md lists too."""
 SHIFT = RunSettings(KnownSettings(load_scenario('upshift')))
 
 

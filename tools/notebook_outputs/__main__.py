@@ -16,4 +16,4 @@ if __name__ == '__main__':
         for page in write_notebooks():
             print(f'{page} has changed')
     except DdctError as error:
-        sys.exit(f'notebook_outputs: {error}')
+        sys.exit(f'tools/run notebook_outputs: {error}')

@@ -32,7 +32,7 @@ def read_notebook(path: Path) -> Any:
     try:
         import nbformat
     except ImportError as error:
-        raise DdctError(f'notebooks need nbclient ({error}): make .venv/.test') from error
+        raise DdctError(f'notebooks need nbclient ({error}): make setup EXTRAS=test') from error
     return nbformat.read(path, as_version=4)
 
 

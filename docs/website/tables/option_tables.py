@@ -84,4 +84,4 @@ TABLES = {
     'lqi': _controllers('lqi'),
     'least_jerk': _controllers('least_jerk'),
 }
-"""Tables by their name in the marks of the pages."""
+"""Tables by their name in the pages."""

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Tables of figures, further metrics and limits with the names of the programs."""
+"""Tables of the figures, further metrics and limits by which runs are judged."""
 
 from collections.abc import Iterable
 
@@ -25,14 +25,14 @@ def score_tables() -> dict[str, TextTable]:
         for limit in packaged_limits().limits
     ]
     return {
-        'figures': _table_of('Figures', FIGURES),
-        'metrics': _table_of('Metrics', OTHERS),
-        'limits': TextTable('Limits', ('metric', 'limit', 'holds for', 'source'), limits),
+        'figures': _table_of(FIGURES),
+        'metrics': _table_of(OTHERS),
+        'limits': TextTable('', ('metric', 'limit', 'holds for', 'source'), limits),
     }
 
 
-def _table_of(title: str, metrics: Iterable[Metric]) -> TextTable:
+def _table_of(metrics: Iterable[Metric]) -> TextTable:
     rows = [
         (f'`{each.key}`', each.symbol, each.unit, each.meaning, each.undefined) for each in metrics
     ]
-    return TextTable(title, _HEADERS, rows)
+    return TextTable('', _HEADERS, rows)
