@@ -7,9 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.program.command_line import ROS_ARGUMENTS
 
-ROS_ARGUMENTS = '--ros-args'
-_END = '--'
 _NAMESPACE = '__ns'
 _REMAP = ('-r', '--remap')
 _FULL_NAME = re.compile(r'(/[A-Za-z](_?[A-Za-z0-9])*_?)+')
@@ -62,23 +61,3 @@ class GraphNames:
         space = f'{self.namespace}/{inner}' if inner else self.namespace
         rules = [(_NAMESPACE, space)] if space else []
         return [each for old, new in (*rules, *self.topics) for each in ('-r', f'{old}:={new}')]
-
-
-def split_ros_arguments(arguments: Sequence[str]) -> tuple[list[str], GraphNames]:
-    """
-    Return the arguments of a program that are its own, and the names that the others give.
-
-    ROS arguments are those from `--ros-args` to the next `--`, or to the end. Raise ParameterError
-    for one that a graph does not take.
-    """
-    own: list[str] = []
-    for_ros: list[str] = []
-    into = own
-    for argument in arguments:
-        if argument == ROS_ARGUMENTS:
-            into = for_ros
-        elif argument == _END and into is for_ros:
-            into = own
-        else:
-            into.append(argument)
-    return own, GraphNames.of(for_ros)

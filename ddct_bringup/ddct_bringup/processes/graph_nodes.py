@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from ddct_bringup.processes.graph_names import ROS_ARGUMENTS, GraphNames
+from ddct_bringup.processes.graph_names import GraphNames
 from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.graph.node_reports import CONTROL_NODES
+from ddct_plant.program.command_line import ROS_ARGUMENTS
 from ddct_plant.shift.roles import OFF_GOING
 
 

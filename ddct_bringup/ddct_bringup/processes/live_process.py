@@ -10,10 +10,11 @@ from contextlib import contextmanager
 
 from ddct_bringup.processes.fork_server import start_processes
 from ddct_bringup.processes.forked import Forked
-from ddct_bringup.processes.graph_names import ROS_ARGUMENTS, GraphNames
+from ddct_bringup.processes.graph_names import GraphNames
 from ddct_bringup.processes.supervisor import POLL_S
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.domain import own_domain
+from ddct_plant.program.command_line import ROS_ARGUMENTS
 
 VIEWER_SUBSCRIBED = 'a viewer shows'
 """Start of the line that `live` prints when a viewer subscribes to a topic."""

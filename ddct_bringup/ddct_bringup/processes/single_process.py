@@ -13,13 +13,12 @@ from collections.abc import Callable, Sequence
 
 from rclpy.context import Context
 
-from ddct_bringup.processes.graph_names import ROS_ARGUMENTS
 from ddct_bringup.processes.graph_nodes import ALL_NODES, NodeSpec, nodes_of_process
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.arguments import init_ros
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.spin import end_of, finish_node, make_executor, spin_until, watched_stops
-from ddct_plant.program.command_line import run_program
+from ddct_plant.program.command_line import ROS_ARGUMENTS, run_program
 from ddct_plant.program.supervision import announce_exit
 
 

@@ -17,7 +17,12 @@ from ddct_bringup.programs.options.of_runs import (
     wants_floors,
 )
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.program.command_line import ProgramParser, complain, run_program
+from ddct_plant.program.command_line import (
+    ProgramParser,
+    complain,
+    run_program,
+    split_ros_arguments,
+)
 
 PROGRAM = 'bringup'
 _complain = partial(complain, PROGRAM)
@@ -40,7 +45,7 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def _bringup(argv: list[str]) -> int:
-    own, graph = shell.split_ros_arguments(argv)
+    own, for_ros = split_ros_arguments(argv)
     options = _parser().parse_args(own)
     if options.list:
         shell.print_choices()
@@ -54,7 +59,7 @@ def _bringup(argv: list[str]) -> int:
         [options.controller],
         options.layout,
         _complain,
-        graph,
+        shell.GraphNames.of(for_ros),
         **settings_given(options),
     )
     shell.print_adjusted(plan.settings.scenario)

@@ -22,7 +22,12 @@ from ddct_bringup.programs.options.of_runs import (
 )
 from ddct_plant.base.errors import DdctError, ParameterError, printable
 from ddct_plant.files.output_file import STDOUT, require_place
-from ddct_plant.program.command_line import ProgramParser, complain, run_program
+from ddct_plant.program.command_line import (
+    ProgramParser,
+    complain,
+    run_program,
+    split_ros_arguments,
+)
 
 PROGRAM = 'ddct compare'
 _complain = partial(complain, PROGRAM)
@@ -51,7 +56,7 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def _compare(argv: list[str]) -> int:
-    own, graph = shell.split_ros_arguments(argv)
+    own, for_ros = split_ros_arguments(argv)
     options = _parser().parse_args(own)
     if options.list:
         shell.print_choices()
@@ -68,7 +73,7 @@ def _compare(argv: list[str]) -> int:
         None if everyone else shell.controllers_of(options.controllers),
         options.layout,
         _complain,
-        graph,
+        shell.GraphNames.of(for_ros),
         **settings_given(options),
     )
     shell.print_adjusted(plans[0].settings.scenario)

@@ -10,11 +10,10 @@ from ddct_bringup.api import shell
 from ddct_bringup.programs.options.of_runs import DEFAULT_PORT
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.graph.domain import require_ros
-from ddct_plant.program.command_line import ProgramParser, run_program
+from ddct_plant.program.command_line import ProgramParser, run_program, split_ros_arguments
 
 PROGRAM = 'ddct live'
 _LAST_PORT = 65_535
-_ROS_ARGS = '--ros-args'
 _NICENESS = 10
 
 _EPILOG = """\
@@ -35,7 +34,8 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def _live(argv: list[str]) -> int:
-    options = _parser().parse_args(shell.remove_ros_args(argv) if _ROS_ARGS in argv else argv)
+    own, _ = split_ros_arguments(argv)
+    options = _parser().parse_args(own)
     require_ros()
     if not 0 <= options.port <= _LAST_PORT:
         raise ParameterError(f'--port is {options.port}: give a number from 0 to {_LAST_PORT}')

@@ -6,7 +6,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ddct_bringup.processes.graph_names import ROS_ARGUMENTS, GraphNames
+from ddct_bringup.processes.graph_names import GraphNames
 from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S, NodeArguments, nodes_of
 from ddct_controllers.architecture import loop_needs
 from ddct_controllers.handover.laws import make_handover
@@ -18,6 +18,7 @@ from ddct_plant.files.yaml_text import dump_yaml
 from ddct_plant.graph.domain import require_domain, require_ros
 from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.graph.node_reports import CONTROL_NODES
+from ddct_plant.program.command_line import ROS_ARGUMENTS
 from ddct_plant.program.own_process import ProcessEndedError
 from ddct_plant.scenario.recorded_settings import RecordedSettings
 from ddct_plant.scenario.settings import RunSettings

@@ -5,20 +5,23 @@
 import pytest
 from refusals import refused
 
-from ddct_bringup.processes.graph_names import GraphNames, split_ros_arguments
+from ddct_bringup.processes.graph_names import GraphNames
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.program.command_line import split_ros_arguments
 
 CAR = ['-r', '__ns:=/car', '--remap', '/clock:=/car/clock']
 
 
 def test_remaps_name_the_graph_and_its_off_going_side():
-    own, names = split_ros_arguments(['--out', 'a', '--ros-args', *CAR, '--', '--overwrite'])
+    own, for_ros = split_ros_arguments(['--out', 'a', '--ros-args', *CAR, '--', '--overwrite'])
+    names = GraphNames.of(for_ros)
     assert own == ['--out', 'a', '--overwrite']
     assert names.resolved('/clock') == '/car/clock'
     assert names.remaps() == ['-r', '__ns:=/car', '-r', '/clock:=/car/clock']
     assert names.remaps('off_going')[1] == '__ns:=/car/off_going'
     assert GraphNames().remaps('off_going') == ['-r', '__ns:=/off_going']
-    assert split_ros_arguments(['--out', 'a']) == (['--out', 'a'], GraphNames())
+    assert split_ros_arguments(['--out', 'a']) == (['--out', 'a'], [])
+    assert GraphNames.of([]) == GraphNames()
 
 
 @pytest.mark.parametrize(
@@ -36,4 +39,4 @@ def test_remaps_name_the_graph_and_its_off_going_side():
 )
 def test_other_ros_arguments_are_refused(arguments):
     with refused(ParameterError, '--ros-args'):
-        split_ros_arguments(['--ros-args', *arguments])
+        GraphNames.of(arguments)

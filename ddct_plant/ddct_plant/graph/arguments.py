@@ -17,10 +17,10 @@ from ddct_plant.graph.domain import discover_locally, require_domain, require_ro
 from ddct_plant.graph.half_made_ports import remove_half_made_ports
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.qos import QOS_OVERRIDES
+from ddct_plant.program.command_line import ROS_ARGUMENTS, split_ros_arguments
 from ddct_plant.program.help_text import filled
 
 HELP = {'-h', '--help'}
-ROS_ARGUMENTS, _END_OF_ROS_ARGUMENTS = '--ros-args', '--'
 _UNDER = ' ' * 6
 """Indentation of what a parameter means, below its name."""
 _NO_LOGS = 'failed to initialize logging'
@@ -28,18 +28,12 @@ _NO_LOGS = 'failed to initialize logging'
 
 def require_ros_arguments(arguments: Sequence[str]) -> None:
     """Raise ParameterError for an argument outside `--ros-args`: a node has none of its own."""
-    for_ros = False
-    for argument in arguments:
-        if argument == ROS_ARGUMENTS:
-            for_ros = True
-        elif for_ros and argument == _END_OF_ROS_ARGUMENTS:
-            for_ros = False
-        elif not for_ros:
-            # rcl would pass over it, or take NAME:=VALUE for the new name of a topic.
-            raise ParameterError(
-                f'unknown argument {argument}: parameters go behind {ROS_ARGUMENTS}, '
-                'as -p NAME:=VALUE'
-            )
+    own, _ = split_ros_arguments(arguments)
+    if own:
+        # rcl would pass over it, or take NAME:=VALUE for the new name of a topic.
+        raise ParameterError(
+            f'unknown argument {own[0]}: parameters go behind {ROS_ARGUMENTS}, as -p NAME:=VALUE'
+        )
 
 
 def init_ros(arguments: Sequence[str] | None, context: Context | None = None) -> None:
@@ -87,16 +81,17 @@ def node_help(name: str, factory: Callable[[], GraphNode], arguments: Sequence[s
     The node is built with the arguments, and discovery is off meanwhile. Raise DdctError when it
     cannot be built.
     """
+    width = shutil.get_terminal_size().columns
     os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'OFF'
     try:
         given = [argument for argument in arguments if argument not in HELP]
         init_ros([*given, ROS_ARGUMENTS, '--log-level', 'warn'])
         node = factory()
-        lines = _parameters(node)
+        lines = _parameters(node, width)
         node.destroy_node()
     finally:
         rclpy.try_shutdown()
-    program, width = f'ddct node {name}', shutil.get_terminal_size().columns
+    program = f'ddct node {name}'
     before = [
         f'usage: {program} [--ros-args -p PARAMETER:=VALUE ...]',
         '',
@@ -117,8 +112,8 @@ def node_help(name: str, factory: Callable[[], GraphNode], arguments: Sequence[s
     return '\n'.join(shown)
 
 
-def _parameters(node: GraphNode) -> list[str]:
-    lines, width = [], shutil.get_terminal_size().columns
+def _parameters(node: GraphNode, width: int) -> list[str]:
+    lines = []
     for parameter in node.get_parameters(node.own_parameters()):
         description = node.describe_parameter(parameter.name).description
         lines += [

@@ -8,7 +8,7 @@ import errno
 import gc
 import os
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, version
 from pathlib import Path
@@ -29,6 +29,7 @@ _PROGRAMS = 'ddct.programs'
 """Group of the entry points of what `ddct` starts by its first word."""
 _SCRIPTS = 'ddct.scripts'
 """Group of the entry points of what `ros2 run` starts: the nodes, and some programs."""
+ROS_ARGUMENTS, _END_OF_ROS_ARGUMENTS = '--ros-args', '--'
 _USAGE = 2
 """Exit code after invalid options, as in argparse."""
 _INTERRUPTED = 130
@@ -94,6 +95,25 @@ def load_program(point: EntryPoint) -> Callable[[], int]:
     if interrupted_by():  # a module has dropped it
         raise KeyboardInterrupt
     return loaded
+
+
+def split_ros_arguments(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
+    """
+    Return the arguments of a program that are its own, and those of ROS.
+
+    These are from `--ros-args` to the next `--`, or to the end.
+    """
+    own: list[str] = []
+    for_ros: list[str] = []
+    into = own
+    for argument in arguments:
+        if argument == ROS_ARGUMENTS:
+            into = for_ros
+        elif argument == _END_OF_ROS_ARGUMENTS and into is for_ros:
+            into = own
+        else:
+            into.append(argument)
+    return own, for_ros
 
 
 class ProgramParser(argparse.ArgumentParser):

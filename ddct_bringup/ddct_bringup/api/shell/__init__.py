@@ -11,8 +11,6 @@ from typing import TYPE_CHECKING
 from ddct_plant.base.late_names import late_names
 
 if TYPE_CHECKING:
-    from rclpy.utilities import remove_ros_args
-
     from ddct_bringup.api.arguments import planned, run_settings
     from ddct_bringup.api.shell.campaigns import carry_out_campaign, replay_row, show_campaign
     from ddct_bringup.api.shell.comparison import FILES, Comparer, NoValidRunError, compare_into
@@ -42,7 +40,7 @@ if TYPE_CHECKING:
     from ddct_bringup.floor.front_chart import front_chart
     from ddct_bringup.live.live_node import LiveNode
     from ddct_bringup.processes.fork_server import start_server
-    from ddct_bringup.processes.graph_names import split_ros_arguments
+    from ddct_bringup.processes.graph_names import GraphNames
     from ddct_bringup.processes.live_process import live_view
     from ddct_bringup.report.page import report_page
     from ddct_bringup.reproduction.figures import command as figures_command
@@ -78,7 +76,6 @@ if TYPE_CHECKING:
     from ddct_plant.files.json_records import write_json
     from ddct_plant.files.yaml_text import dump_yaml
     from ddct_plant.graph.spin import run_node
-    from ddct_plant.program.printed_table import print_note
     from ddct_plant.program.progress import with_progress
     from ddct_plant.scenario.case import case_values
     from ddct_plant.scenario.chosen import print_adjusted
