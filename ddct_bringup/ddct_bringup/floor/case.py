@@ -2,23 +2,28 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs that a floor covers, as rows of a program: they start alike and lock at one instant."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.floor.dynamics.capacity import CapacityRange, capacity_range, stays_within
+from ddct_bringup.floor.coverage import why_outside
+from ddct_bringup.floor.dynamics.capacity import CapacityRange, capacity_range
 from ddct_bringup.floor.dynamics.engine_laws import EngineLaw, demand_law, engine_law
 from ddct_bringup.floor.dynamics.laws import Law, load_law
 from ddct_bringup.floor.dynamics.motion import Motion, motion_of
+from ddct_bringup.floor.dynamics.stability import require_stable
 from ddct_bringup.floor.dynamics.start import Start
-from ddct_bringup.floor.dynamics.torque_cut import cuts_as_usual, gives_demand
-from ddct_bringup.floor.dynamics.tube import Tube, rigid_tube
+from ddct_bringup.floor.dynamics.torque_cut import gives_demand
+from ddct_bringup.floor.dynamics.tube import ENGINE_MARGIN, Tube, rigid_tube
 from ddct_bringup.floor.lock import Lock
 from ddct_bringup.floor.rows import Rows, band_rows, clutch_rows, engine_rows
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.rules import Rules
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import time_of_step
 from ddct_plant.scenario.settings import RunSettings
 
 MOST_REQUESTS = 4.0
@@ -116,17 +121,46 @@ def case_at(
 
     C_m is a variable where limits of the engine can act, unless `limited` is False: then these are
     the runs in which it is the demand throughout. Without rules they are the packaged ones.
+    Raise ParameterError where the engine reaches its cut.
     """
-    return Case(
+    tube = rigid_tube(settings, start, lock_time_s)
+    case = Case(
         settings,
         start,
         Lock(lock_time_s),
-        rigid_tube(settings, start, lock_time_s),
+        tube,
         limited,
         capacity_range(settings, start.temperature_c),
         rules or packaged_limits().rules,
         _most_request(settings),
     )
+    _require_fuel(case)
+    return case
+
+
+def _require_fuel(case: Case) -> None:
+    """
+    Raise ParameterError where the engine of a rigid car reaches its cut.
+
+    A fuel cut takes all torque and ends at another speed than it begins at: no linear program has
+    such an engine, and a run that locks then may not be without the cut.
+    """
+    scenario, tube = case.settings.scenario, case.tube
+    if scenario.engine_limits is None:
+        return
+    cut = scenario.engine_limits.cut_rad_s
+    # The slower of the engine and of the locked car.
+    reached = np.flatnonzero(tube.engine_low[:-1] + ENGINE_MARGIN >= cut)
+    if reached.size:
+        # The rigid car of an unstable model means nothing.
+        require_stable(scenario.name, scenario.controlled_driveline, case.load, case.engine)
+        time_s = time_of_step(case.start.step + int(reached[0]))
+        before_s = (math.ceil(10.0 * time_s - 1e-6) - 1) / 10.0
+        raise ParameterError(
+            f'the engine reaches its cut, {cut:g} rad/s, at {time_s:.2f} s: there is no floor; '
+            f'shorten the drive: --set duration_s={before_s:g}',
+            key='duration_s',
+        )
 
 
 def case_of_run(
@@ -139,13 +173,8 @@ def case_of_run(
     these runs. Otherwise C_m is a variable. Where a run was clipped at zero capacity, these are.
     """
     first = start.step
-    used = run.torque_request[:first]
-    if not np.array_equal(np.maximum(used, 0.0), start.requests) or run.two_input:
-        return None
-    if start.off_going and not (start.off_going.agrees(run) and cuts_as_usual(settings, run)):
-        return None
     end = first + lock.periods + 1
-    if not stays_within(settings, run, first, end, start.temperature_c):
+    if why_outside(settings, start, lock, run):
         return None
     limited = not gives_demand(run, first)
     capacity = capacity_range(settings, start.temperature_c)

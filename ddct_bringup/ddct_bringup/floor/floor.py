@@ -10,6 +10,7 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.case import Case, case_at, case_of_run
 from ddct_bringup.floor.computed_floor import ComputedFloor, computed_floor, floor_without_run
 from ddct_bringup.floor.control_start import control_start
+from ddct_bringup.floor.coverage import require_not_below
 from ddct_bringup.floor.dynamics.start import Start
 from ddct_bringup.floor.lock import lock_of
 from ddct_bringup.floor.metric_units import FRICTION
@@ -89,8 +90,8 @@ def floors_of_run(
     Return by metric the value of a run and the least at its own lock instant.
 
     The program contains the run; no run near the least is searched for. None where a metric has no
-    value, and for all metrics of a run that does not lock once and stay locked, commands the
-    engine, or starts otherwise.
+    value, and for all metrics of a run that does not lock once and stay locked, or that
+    `why_outside` names. Raise FloorWithdrawnError for a run of the program below its floor.
     """
     none: dict[str, OverFloor | None] = dict.fromkeys(metrics)
     start = control_start(settings) if start is None else start
@@ -103,9 +104,16 @@ def floors_of_run(
         return none
     values = {metric: value_of(settings, metric, run, start.scored_from) for metric in metrics}
     return {
-        metric: None if value is None else OverFloor(value, floor_of_case(case, metric))
+        metric: None if value is None else _over(case, metric, value)
         for metric, value in values.items()
     }
+
+
+def _over(case: Case, metric: str, value: float) -> OverFloor:
+    """Return the value of a run of a case beside its floor; raise FloorWithdrawnError below it."""
+    floor = floor_of_case(case, metric)
+    require_not_below(metric, value, floor.least, case.lock)
+    return OverFloor(value, floor)
 
 
 def floor_of_case(case: Case, metric: str) -> Floor:

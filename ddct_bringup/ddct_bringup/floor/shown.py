@@ -80,7 +80,7 @@ def _with_reason(reason: str, *values: Any) -> list[Cell]:
 def _no_floor(floor: Floor) -> str:
     """Return the reason of the dashes in a row of the front."""
     if floor.least is None:
-        return 'no torque request locks the plates at that time'
+        return 'no torque request locks the plates at that time with the engine below its cut'
     if floor.attained is None:
         return 'no run with that lock was found'
     return 'the least is 0'

@@ -40,9 +40,9 @@ def _limit(argv: list[str]) -> int:
     )
     for time_s, floor in found.impossible.items():
         _complain(
-            f'lock time {time_s:g} s: no torque request locks the plates then: a Farkas ray of '
-            f'sum {floor.certificate.proven:.3g}, which must be above 0, proves it: give '
-            'another time'
+            f'lock time {time_s:g} s: no torque request locks the plates then, with the engine '
+            f'below its cut: a Farkas ray of sum {floor.certificate.proven:.3g}, which must be '
+            'above 0, proves it: give another time'
         )
     if options.json:
         shell.write_json(options.json, found.written)

@@ -8,6 +8,7 @@ from dataclasses import replace
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.case import case_at, case_of_run
 from ddct_bringup.floor.control_start import control_start
+from ddct_bringup.floor.coverage import FloorWithdrawnError, require_not_below
 from ddct_bringup.floor.dynamics.start import Start
 from ddct_bringup.floor.dynamics.torque_cut import gives_demand
 from ddct_bringup.floor.floor import floor_of_case
@@ -52,6 +53,8 @@ def scores_with_least(
     """Return the scores of a run with its peak jerk over the least at its final lock."""
     try:
         ratio, is_bound = _over_least(scores, settings, trajectory, limits.rules)
+    except FloorWithdrawnError:
+        raise
     except DdctError as error:
         reasons = {**scores.null_reasons, JERK_OVER_LEAST.key: str(error)}
         return replace(scores, null_reasons=reasons)
@@ -103,4 +106,9 @@ def _beside(
         raise DdctError('no run of the clutch alone locks at that instant')
     once = lock_of(trajectory, start.step, rules) is not None
     own = case_of_run(settings, start, lock, trajectory, rules) if once else None
-    return value / least, own is not None and (limited or gives_demand(trajectory, start.step))
+    covered = own is not None and (limited or gives_demand(trajectory, start.step))
+    if own is not None and covered and value < least:
+        # The run may leave the speeds of a rigid car, but not those of its own case.
+        least = min(least, floor_of_case(own, PEAK_JERK).least or least)
+        require_not_below(PEAK_JERK, value, least, lock)
+    return value / least, covered

@@ -16,6 +16,7 @@ from ddct_bringup.floor import computed_floor
 from ddct_bringup.floor.case import case_at, case_of_run
 from ddct_bringup.floor.computed_floor import DEMAND, LIMITS
 from ddct_bringup.floor.control_start import control_start
+from ddct_bringup.floor.coverage import FloorWithdrawnError, require_not_below, why_outside
 from ddct_bringup.floor.floor import floor_of, floors_of_run
 from ddct_bringup.floor.friction_work import least_friction_work
 from ddct_bringup.floor.front import least_lock_time
@@ -266,6 +267,25 @@ def test_a_lock_before_any_request_acts_leaves_nothing_to_choose(metric):
     floor = floor_of(settings_of(), metric, 0.005)
     assert (floor.least, floor.attained) == (None, None)
     assert floor.certificate.kind == RAY
+
+
+def test_a_run_whose_engine_meets_its_cut_is_outside_and_any_other_above_its_floor():
+    """In a shift the engine is fastest before the lock: 326 rad/s, a locked car has 284."""
+    limits = {'engine_limits.cut_rad_s': 320.0, 'engine_limits.resume_rad_s': 310.0}
+    for changes, outside in [({}, ''), (limits, 'meets the cut of the engine')]:
+        settings = RunSettings.of(load_scenario('upshift', changes), {})
+        run = run_headless(settings, 'ls8')
+        start = control_start(settings)
+        lock = lock_of(run, start.step, RULES)
+        assert why_outside(settings, start, lock, run) == outside
+        over = floors_of_run(settings, ['peak_jerk'], run)['peak_jerk']
+        assert (over is None) == bool(outside)
+
+
+def test_a_covered_run_below_its_floor_withdraws_the_floor():
+    require_not_below('peak_jerk', 5.0, 5.0 + 1e-9, Lock(1.0))
+    with pytest.raises(FloorWithdrawnError, match='peak_jerk .* is 4, below its proven floor 5:'):
+        require_not_below('peak_jerk', 4.0, 5.0, Lock(1.0))
 
 
 def test_a_run_that_slips_again_has_no_floor():

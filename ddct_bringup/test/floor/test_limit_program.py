@@ -13,6 +13,7 @@ from ddct_bringup.programs.limit import main
 
 pytestmark = pytest.mark.slow
 LAUNCH = ['--scenario', 'launch', '--metrics', 'peak_jerk']
+CUT = ['--set', 'engine_limits.cut_rad_s=440', '--set', 'engine_limits.resume_rad_s=390']
 
 
 def test_it_prints_writes_and_draws_the_front_with_controllers_beside(tmp_path, capsys):
@@ -104,6 +105,7 @@ def test_the_proof_that_no_run_locks_then_is_the_same_for_every_metric(
         (['--architecture', 'base'], 'choose the architecture detailed'),
         ([*LAUNCH, '--set', 'load.frontal_area_m2=1e7'], 'the model is unstable: its state grows'),
         ([*LAUNCH, '--set', 'load.frontal_area_m2=1e8'], 'the model is unstable: its state grows'),
+        ([*LAUNCH, *CUT], 'reaches its cut, 440 rad/s, at 2.99 s: there is no floor'),
         ([*LAUNCH, '--lock-times', '9'], 'when the run ends'),
         ([*LAUNCH, '--lock-times', 'soon'], 'START:STOP:COUNT'),
         ([*LAUNCH, '--lock-times', '1:0.5:3'], 'rising'),

@@ -29,6 +29,9 @@ def settings_of(scenario: str = 'thesis', **further: Any) -> RunSettings:
     return RunSettings.of(load_scenario(scenario), further)
 
 
+CUT = {'engine_limits.cut_rad_s': 440.0, 'engine_limits.resume_rad_s': 390.0}
+
+
 def scored(controller: str, settings: RunSettings, limits: Limits | None = None) -> ScoredRun:
     """Return the scores of a headless run beside the least of its case."""
     limits = limits or packaged_limits()
@@ -96,6 +99,7 @@ def test_for_a_run_that_does_more_than_lock_once_the_least_is_a_yardstick(
         ('ls8', settings_of('launch_hill'), 'wheels do not turn'),
         ('pi', settings_of(architecture='feedforward'), 'choose the architecture detailed'),
         ('ls8', settings_of('tip_in'), 'nothing to engage'),
+        ('ls8', RunSettings(KnownSettings(load_scenario('launch', CUT))), 'reaches its cut'),
         (
             'pi',
             RunSettings(KnownSettings(load_scenario('thesis', {'duration_s': 6.0}))),

@@ -95,6 +95,14 @@ class EngineLimits(OptionGroup, prefix='engine_limits.'):
         return OVER_REVVED if speed >= self.over_rev_rad_s else None
 
 
+def fuel_is_cut(limits: EngineLimits, speeds: np.ndarray) -> np.ndarray:
+    """Return at which steps the rev limiter cuts the fuel, (n,), for w_m in rad/s from t_0 on."""
+    cut, cuts = False, np.zeros(len(speeds), dtype=bool)
+    for k, speed in enumerate(speeds.tolist()):
+        cuts[k] = cut = speed >= (limits.resume_rad_s if cut else limits.cut_rad_s)
+    return cuts
+
+
 class LimitedEngine:
     """
     Engine torque within the limits at the speed of t_k; called once per period.

@@ -4,12 +4,13 @@
 
 import math
 
+import numpy as np
 import pytest
 from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.units import rad_s_from_rpm
-from ddct_plant.models.engine_limits import EngineLimits, LimitedEngine
+from ddct_plant.models.engine_limits import EngineLimits, LimitedEngine, fuel_is_cut
 
 LIMITS = EngineLimits()
 IDLE = LIMITS.idle_rad_s
@@ -80,11 +81,10 @@ def test_an_engine_loaded_beyond_idle_control_stalls_and_stays_off():
 def test_the_limiter_cuts_fuel_with_hysteresis():
     engine, cut, resume = LimitedEngine(LIMITS), LIMITS.cut_rad_s, LIMITS.resume_rad_s
     between = 0.5 * (cut + resume)
-    found = [
-        engine.deliver(100.0, speed) > 0.0
-        for speed in (between, cut, between, resume, resume - 0.1, between)
-    ]
+    speeds = [between, cut, between, resume, resume - 0.1, between]
+    found = [engine.deliver(100.0, speed) > 0.0 for speed in speeds]
     assert found == [True, False, False, False, True, True]
+    assert (~fuel_is_cut(LIMITS, np.array(speeds))).tolist() == found
 
 
 def test_a_free_engine_at_full_pedal_hunts_below_the_over_rev_speed():

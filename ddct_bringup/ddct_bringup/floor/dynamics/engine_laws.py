@@ -134,8 +134,7 @@ def engine_law(settings: RunSettings, tube: Tube, start: int, idle_integral: flo
     Return the law of C_m; the demand itself where the limits of the engine cannot act.
 
     `idle_integral` is the most in N m that the integral of idle control can be at control start;
-    it grows at most as in the slowest run of the band. A run in which the rev limiter cuts the
-    fuel is not covered.
+    it grows at most as in the slowest run of the band. The engine stays below its cut.
     """
     limits, steps = settings.scenario.engine_limits, len(tube.engine_low)
     law = demand_law(settings, start, steps)
@@ -146,7 +145,7 @@ def engine_law(settings: RunSettings, tube: Tube, start: int, idle_integral: flo
     below = np.maximum(limits.idle_rad_s - slowest, 0.0)
     grown = idle_integral + limits.idle_integral_n_m * PERIOD_S * np.cumsum(below)
     integral = np.minimum(grown, limits.idle_most_n_m)
-    fastest = np.maximum(np.minimum(tube.engine_high, limits.resume_rad_s), slowest + 1.0)
+    fastest = np.maximum(np.minimum(tube.engine_high, limits.cut_rad_s), slowest + 1.0)
     ends = [slowest, fastest]
     inner = [np.clip(speed, *ends) for speed in limits.speed_rad_s]
     full = np.array([_full(limits, speed) for speed in (*ends, *inner)])

@@ -10,6 +10,7 @@ import numpy as np
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.bound import Bound
 from ddct_bringup.floor.case import Case
+from ddct_bringup.floor.coverage import cut_step
 from ddct_bringup.floor.dynamics.engine_laws import law_of_run
 from ddct_bringup.floor.dynamics.laws import load_of_run
 from ddct_bringup.floor.dynamics.start import driving_acceleration
@@ -91,6 +92,8 @@ def replays_of(
             signals_of_run(case.start.scored_from, case.settings.scenario, run)
         )
         locks = _locks(case, run)
+        if cut_step(case.settings, run, case.start.step) is not None:
+            break
         if not case.limited and not gives_demand(run, case.start.step):
             break
         if not locks or value is None:
