@@ -204,6 +204,21 @@ def test_program_prints_the_tables_of_chapters_without_reasons(
     assert not [line for line in printed.splitlines() if line.endswith(' reason')]
 
 
+def test_section_shows_one_table_with_the_reasons_of_its_misses_and_json_has_its_numbers_alone(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    place = tmp_path / 'numbers.json'
+    assert thesis.main(['numbers', '--section', 'Table 5.1', '--json', str(place)]) == 0
+    printed = capsys.readouterr().out
+    assert len(printed.splitlines()) < 80
+    misses = printed.partition('Misses')[2]
+    assert 'MPC3: sigma of w_sr; sigma of A_x' in misses and '25 %' in misses
+    sections = {each['section'] for each in json.loads(place.read_text())['numbers']}
+    assert sections == {'5, Table 5.1'}
+    assert thesis.main(['numbers', '--section', '9']) == 1
+    assert '--section 9: no printed number there' in capsys.readouterr().err
+
+
 def test_program_without_one_of_its_sources_reports_its_numbers_as_not_computed(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -212,6 +227,6 @@ def test_program_without_one_of_its_sources_reports_its_numbers_as_not_computed(
     assert thesis.main(['numbers']) == 1
     *_, error = capsys.readouterr().err.splitlines()
     assert error.startswith(
-        'ddct thesis: the gate does not hold: 1.5.1, w_d of the three simplified models beside '
-        'the detailed model: nothing was computed for it; '
+        'ddct thesis: a claim of the list does not hold: 1.5.1, w_d of the three simplified '
+        'models beside the detailed model: nothing was computed for it; '
     )

@@ -75,7 +75,7 @@ sigma) is not a useful tolerance: no parameters of the model come that close, so
 decide which values are sacrificed.
 """
 PREDICTION_TOLERANCE = 0.25
-"""Largest relative deviation of a predicted value, as in the thesis gate."""
+"""Largest relative deviation of a predicted value, as in the list of numbers."""
 
 THESIS_TABLE = (
     ThesisRow('LS8', 'ls8', 0.71, 1.15, 0.20, CALIBRATED),

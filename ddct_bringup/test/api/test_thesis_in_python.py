@@ -71,5 +71,5 @@ def test_a_claim_that_does_not_hold_is_an_error(monkeypatch: pytest.MonkeyPatch)
         return {}
 
     monkeypatch.setattr(module, 'compute', lacking)
-    with pytest.raises(DdctError, match='the gate does not hold'):
+    with pytest.raises(DdctError, match='a claim of the list does not hold'):
         thesis_numbers()

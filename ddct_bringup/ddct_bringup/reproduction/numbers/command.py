@@ -8,9 +8,13 @@ from functools import partial
 from typing import Any
 
 from ddct_bringup.reproduction.numbers.gate import GateRow, NumbersDocument, judge
-from ddct_bringup.reproduction.numbers.gate_tables import chapter_tables, page_tables
+from ddct_bringup.reproduction.numbers.gate_tables import (
+    chapter_tables,
+    misses_table,
+    page_tables,
+)
 from ddct_bringup.reproduction.numbers.number_files import thesis_numbers
-from ddct_bringup.reproduction.numbers.thesis_number import Value
+from ddct_bringup.reproduction.numbers.thesis_number import ThesisNumber, Value
 from ddct_bringup.reproduction.values.closed_loop_values import closed_loop_values
 from ddct_bringup.reproduction.values.controller_values import predictive_values
 from ddct_bringup.reproduction.values.h_infinity_values import h_infinity_values
@@ -41,6 +45,7 @@ whose inputs are not printed)."""
 _EPILOG = """\
 examples:
   ddct thesis numbers
+  ddct thesis numbers --section 'Table 5.2'
   ddct thesis numbers --json numbers.json
   ddct thesis numbers --json -                  as JSON on standard output, alone
   ddct thesis numbers --csv numbers.csv         a row per number, for a spreadsheet
@@ -58,6 +63,9 @@ def add_parser(subparsers: Any) -> None:
         description=_DESCRIPTION,
         epilog=_EPILOG,
     )
+    parser.add_argument(
+        '--section', metavar='S', help="only that chapter, section or table: 5, 3.2, 'Table 5.2'"
+    )
     parser.add_argument('--json', metavar='FILE', help='write all numbers; - is standard output')
     parser.add_argument('--csv', metavar='FILE', help='the same as CSV; - is standard output')
     parser.set_defaults(run=run)
@@ -68,7 +76,10 @@ def run(options: argparse.Namespace) -> int:
     require_one_for_stdout(options.json, options.csv)
     require_place('--json', options.json)
     require_place('--csv', options.csv)
-    rows = judge(thesis_numbers(), compute(SOURCES, partial(complain, 'ddct thesis numbers')))
+    every = thesis_numbers()
+    chosen = chosen_numbers(every, options.section)
+    judged = judge(every, compute(SOURCES, partial(complain, 'ddct thesis numbers')))
+    rows = [row for row in judged if row.number in chosen]
     numbers = [row.entry for row in rows]
     tables = {name: table.written for name, table in page_tables(rows).items()}
     document = NumbersDocument(numbers, tables)
@@ -76,7 +87,7 @@ def run(options: argparse.Namespace) -> int:
         cells = [list(to_json(each).values()) for each in numbers]
         write_text(options.csv, csv_text(to_json(numbers[0]), cells))
     if options.csv != STDOUT:
-        show_and_write(options.json, document, lambda: _print(rows))
+        show_and_write(options.json, document, lambda: _print(rows, every=not options.section))
     elif options.json:
         write_json(options.json, document)
     require_all(rows)
@@ -104,10 +115,36 @@ def compute(
     return values
 
 
-def _print(rows: Sequence[GateRow]) -> None:
-    tables = page_tables(rows) | chapter_tables(rows, reasons=False)
-    last = [tables.pop(name) for name in ('errata', 'summary', 'facts')]
-    print_tables((*tables.values(), *last))
+def _print(rows: Sequence[GateRow], *, every: bool) -> None:
+    tables = page_tables(rows)
+    counts = ('summary', 'facts') if every else ()
+    last = (misses_table(rows), *(tables[name] for name in ('errata', *counts)))
+    shown = (*chapter_tables(rows, reasons=False).values(), *last)
+    print_tables(table for table in shown if table.rows)
+
+
+def chosen_numbers(numbers: Sequence[ThesisNumber], section: str | None) -> list[ThesisNumber]:
+    """
+    Return the numbers of a chapter (`5`), section (`3.2`, with its parts) or table (`Table 5.2`).
+
+    Without `section` these are all. Raise ParameterError when there are none.
+    """
+    found = [each for each in numbers if section is None or section in _names_of(each)]
+    if section is not None and not found:
+        known = dict.fromkeys(each.section for each in numbers)
+        raise ParameterError(
+            f'--section {section}: no printed number there; the sections are ' + '; '.join(known),
+            key=section,
+        )
+    return found
+
+
+def _names_of(number: ThesisNumber) -> set[str]:
+    """Return the names of all parts of the thesis that a number stands in."""
+    place, _, table = number.section.partition(', ')
+    parts = place.split('.')
+    upper = {'.'.join(parts[: count + 1]) for count in range(len(parts))}
+    return {*upper, number.section, table} - {''}
 
 
 def require_all(rows: Sequence[GateRow]) -> None:
@@ -120,4 +157,6 @@ def require_all(rows: Sequence[GateRow]) -> None:
     if broken:
         more = len(broken) - _SHOWN_COMPLAINTS
         rest = f'; and {more} more' if more > 0 else ''
-        raise DdctError(f'the gate does not hold: {"; ".join(broken[:_SHOWN_COMPLAINTS])}{rest}')
+        raise DdctError(
+            f'a claim of the list does not hold: {"; ".join(broken[:_SHOWN_COMPLAINTS])}{rest}'
+        )

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows of the gate as tables of text, for the terminal and the page of documentation."""
 
+import math
 from collections import Counter, defaultdict
 from collections.abc import Callable, Sequence
 from operator import attrgetter
@@ -11,6 +12,8 @@ from ddct_bringup.reproduction.numbers.thesis_number import ERRATUM, Finding, is
 from ddct_plant.models.printed import PrintedNumber
 from ddct_plant.program.table import TextColumn, TextTable, Weight, table_of
 
+_LEAST_DIGITS = 3
+"""Least number of digits that count in a computed number."""
 _CHAPTERS = ('1', '2', '3', '4', '5', '6')
 
 
@@ -46,6 +49,26 @@ def facts_table(rows: Sequence[GateRow]) -> TextTable:
     return TextTable('Entries and distinct facts', headers, [*lines, total])
 
 
+def misses_table(rows: Sequence[GateRow]) -> TextTable:
+    """Return the misses, one row per section and reason, with that reason."""
+    found: dict[tuple[str, str], list[str]] = defaultdict(list)
+    for row in rows:
+        if row.outcome.endswith('miss'):
+            found[row.number.section, row.number.reason].append(row.number.item)
+    lines = [(section, _joined(items), reason) for (section, reason), items in found.items()]
+    headers = ('section', 'misses', 'rule, and what decides it')
+    return TextTable('Misses', headers, lines, weights=(Weight.IDENTIFYING, Weight.NEEDED))
+
+
+def _joined(items: Sequence[str]) -> str:
+    """Return items with one semicolon between; a beginning such as `LS8: ` is said once."""
+    found: dict[str, list[str]] = defaultdict(list)
+    for item in items:
+        beginning, colon, rest = item.rpartition(': ')
+        found[beginning + colon].append(rest)
+    return '; '.join(beginning + '; '.join(rests) for beginning, rests in found.items())
+
+
 def count_facts(rows: Sequence[GateRow]) -> Counter[str]:
     """Return the number of groups by outcome: the worst of its numbers, so every miss shows."""
     outcomes: dict[str, list[str]] = defaultdict(list)
@@ -65,23 +88,32 @@ def chapter_tables(rows: Sequence[GateRow], *, reasons: bool) -> dict[str, TextT
             (*_COLUMNS, *_REASON_COLUMNS) if reasons else _COLUMNS,
             [row for row in rows if _chapter(row) == chapter],
             _COMPLETE,
+            () if reasons else (f'the group and reason of each: {_COMPLETE}',),
         )
         for chapter in _CHAPTERS
     }
 
 
 def computed_text(row: GateRow) -> str | None:
-    """Return the computed value with one digit more than the print; None without one."""
+    """
+    Return the computed value, or None without one.
+
+    A number has one digit more than the print, and at least three digits that count; a whole
+    number has none after the point.
+    """
     value = row.computed
     if isinstance(value, Finding):
         return value.evidence
     if value is None or isinstance(value, str):
         return value or None
-    if not row.hit and row.number.verdict != ERRATUM:
-        return f'{value:.5g}'
+    if value == round(value):
+        return f'{value:.0f}'
     stated = [text for text in (row.number.printed, row.number.ours) if text and is_number(text)]
-    unit = min(PrintedNumber('', text).half_unit for text in stated) / 5.0
-    return f'{round(value / unit) * unit:.7g}'
+    half_unit = min(PrintedNumber('', text).half_unit for text in stated)
+    of_print = 1 - math.ceil(math.log10(half_unit))
+    of_value = _LEAST_DIGITS - 1 - math.floor(math.log10(abs(value)))
+    digits = max(of_print, min(of_value, of_print + _LEAST_DIGITS))
+    return f'{round(value, digits):.{max(digits, 0)}f}'
 
 
 def _chapter(row: GateRow) -> str:

@@ -21,10 +21,11 @@ from ddct_bringup.reproduction.values.orders import (
     runs_of_table_5_2,
 )
 from ddct_bringup.verdict.state import ENGAGED, NOT_ENGAGED
+from ddct_plant.program.table import Weight
 from ddct_plant.scenario.file import load_scenario
 
-SCENARIOS = ('thesis', 'thesis_sticking')
-"""Names of the scenarios: the thesis's linear clutch, and the one that sticks."""
+SCENARIOS = {'thesis': 'linear', 'thesis_sticking': 'sticks'}
+"""Clutch by the name of the scenario: the thesis's linear one, and the one that sticks."""
 
 
 @dataclass(frozen=True)
@@ -64,23 +65,23 @@ class RatedRow:
 def table_5_2_in_numbers() -> Study:
     """Return the values, the ratings that follow from them and the printed ones."""
     return Study(
-        f'Table 5.2 in numbers, architecture {WORN_ARCHITECTURE}',
+        f'Table 5.2 in numbers, architecture {WORN_ARCHITECTURE}, by wear gain K_usura',
         (
-            'scenario',
-            'K_usura',
+            'clutch',
+            'wear',
             'controller',
-            '|w_d| as the score window ends rad/s',
+            '|w_d| at the end rad/s',
             'std w_sr rpm',
             'std A_x m/s^2',
             'state',
-            'w_d, ours',
-            'w_sr, ours',
-            'A_x, ours',
-            'w_d, printed',
-            'w_sr and A_x, printed',
+            'ours: w_d',
+            'ours: w_sr',
+            'ours: A_x',
+            'print: w_d',
+            'print: w_sr, A_x',
         ),
         [row for name in SCENARIOS for gain in FINER_WEAR_GAINS for row in rows_of(name, gain)],
-        weights=identified_by(3),
+        weights=(*identified_by(3), *[Weight.NEEDED] * 3, Weight.USEFUL),
     )
 
 
@@ -88,7 +89,7 @@ def rows_of(scenario: str, wear_gain: float) -> list[tuple[str, ...]]:
     """Return the rows of the table for a scenario and a wear gain, one for each controller."""
     return [
         (
-            row.scenario,
+            SCENARIOS[row.scenario],
             f'{row.wear_gain:g}',
             row.controller,
             *(f'{value:.3g}' for value in (row.slip_end_rad_s, *row.sigmas)),
@@ -149,5 +150,5 @@ def _holds(judged: Mapping[str, Finding], name: str) -> bool | None:
 
 
 def _printed(word: str | None, holds: bool | None) -> str:
-    """Return the printed rating and whether it holds; a dash where the thesis prints none."""
-    return '-' if word is None else f'{word}: {"holds" if holds else "does not hold"}'
+    """Return the printed rating and whether ours is a hit; a dash where the thesis prints none."""
+    return '-' if word is None else f'{word} {"hit" if holds else "miss"}'
