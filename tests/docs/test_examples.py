@@ -7,7 +7,8 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from support.documented import ROOT, package_page, run_examples
+from extras import needs
+from support.documented import ROOT, blocks, package_page, run_examples
 
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.spec import read_spec
@@ -29,6 +30,20 @@ PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
 def test_python_examples_run(page: str, tmp_path: Path) -> None:
     """Those of docs/use/python.md take longer: `tests/nightly/docs` runs them."""
     run_examples(page, tmp_path)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    'part', ['class Mine(PolicyController)', pytest.param('step([', marks=needs('gymnasium'))]
+)
+def test_the_policies_of_the_page_print_what_their_comments_say(
+    part: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = 'docs/use/python.md'
+    (text,) = (each.text for each in blocks() if each.page == page and part in each.text)
+    exec(compile(text, page, 'exec'), {'__name__': 'example'})
+    _, _, comment = text.rstrip().rpartition('# ')
+    assert capsys.readouterr().out.startswith(comment.removesuffix('...'))
 
 
 @pytest.mark.parametrize('package', PACKAGES)
