@@ -92,6 +92,15 @@ def test_a_name_that_cannot_be_used_is_refused(
     assert not (tmp_path / 'new').exists()
 
 
+@pytest.mark.parametrize('option', [('--json', '-'), ('--set', 'clutch=stick_slip')])
+def test_options_of_a_check_are_refused_for_a_new_package(
+    capfd: pytest.CaptureFixture[str], tmp_path: Path, option: tuple[str, str]
+) -> None:
+    assert check.main(['--new', 'mine', '--out', str(tmp_path / 'new'), *option]) == 1
+    assert_one_line(capfd.readouterr().err, 'ddct check', 'leave all options but --out out')
+    assert not (tmp_path / 'new').exists()
+
+
 def test_a_folder_that_is_there_stays_as_it_is(
     capfd: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:

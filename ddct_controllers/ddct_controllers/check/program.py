@@ -61,6 +61,9 @@ def _check(argv: list[str]) -> int:
     parser.add_argument('--json', metavar='FILE', help="write the report; '-' is stdout")
     options = parser.parse_args(argv)
     if options.new is not None:
+        others = vars(options).keys() - {'new', 'out'}
+        if any(getattr(options, name) != parser.get_default(name) for name in others):
+            raise ParameterError('--new tries no controller: leave all options but --out out')
         print(write_new(options.new, options.out))
         return 0
     if options.out is not None:
