@@ -45,7 +45,6 @@ STUDIES: Mapping[str, StudyFunction] = engagements.ENGAGEMENTS | {
     function.__name__: function for function in _ABOUT
 }
 """Functions of all studies by name."""
-_COLUMNS, _NAME_COLUMNS = 80, max(map(len, STUDIES))
 _DESCRIPTION = """\
 Study the predictive controllers of Chapter 4, and of what it leaves to future work, in
 the closed loop of the frozen thesis scenario. Then judge every controller in every

@@ -3,7 +3,7 @@
 """A specification of a tuning in another car: its scenarios, and its ranges."""
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -63,5 +63,5 @@ def _changed(content: Mapping[str, Any], car: str) -> tuple[dict[str, Any], Mapp
     return {**changed, GRID: grid}, left_out
 
 
-def _absolute(folder: Path) -> Any:
+def _absolute(folder: Path) -> Callable[[str, str], str]:
     return lambda _, name: in_folder(folder, name)
