@@ -178,6 +178,8 @@ def test_a_bad_log_is_refused_in_one_line_with_its_place(
         (['--from', 'a.csv', '--as-printed'], '--as-printed is about the thesis'),
         (['--from', 'a.csv', '--hold-out', '1.5'], '--hold-out is 1.5: give a share'),
         (['--from', 'none.csv'], 'none.csv: cannot be read'),
+        (['--from', 'none.csv', '--guess', '-'], 'none.csv: no such file or folder'),
+        (['--from', 'tests', '--guess', '-'], 'tests: a bag needs no column map'),
         (['--from', 'none.mcap'], 'none.mcap: no such file or folder'),
         (['--from', 'a.csv', '--columns', 'none.yaml'], '--columns none.yaml: cannot be read'),
     ],

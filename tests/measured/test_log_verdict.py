@@ -125,6 +125,16 @@ def test_an_engine_damping_significantly_below_zero_is_refused_and_not_written_a
     assert any('engine_damping is -0.0' in each and 'negative' in each for each in reasons)
 
 
+def test_a_clutch_torque_above_the_torque_that_speeds_up_a_locked_engine_is_no_torque() -> None:
+    signals = drive().noisy(0)
+    signals['shaft_speed'] = signals['engine_speed']
+    signals['clutch_torque'] = np.full_like(signals['clutch_torque'], 350.0)
+    _, _, reasons = judged(signals, drive().time_s)
+    (reason,) = (each for each in reasons if 'exceeds' in each)
+    assert 'clutch_torque exceeds engine_torque by' in reason
+    assert 'is it the capacity or the request of the clutch' in reason
+
+
 @pytest.mark.nightly
 def test_a_damping_below_zero_by_chance_is_zero_in_the_scenario_with_a_note() -> None:
     signals = drive().noisy(0)

@@ -162,7 +162,8 @@ def read_row(results: Path, index: int, runs: int) -> dict[str, Any]:
     except (OSError, LookupError, ValueError, pa.ArrowException) as error:
         raise DdctError(f'{results}: cannot be read ({error}): finish the campaign') from error
     if not rows:
-        raise DdctError(f'{results}: it has no row {index}')
+        last = compute.max(table[INDEX]).as_py()
+        raise DdctError(f'{results}: it has no row {index}: the rows are 0 to {last}')
     if PATH not in rows[0]:
         raise DdctError(f'{results}: it has no column {PATH}')
     return rows[0]

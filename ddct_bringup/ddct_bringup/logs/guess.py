@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A column map guessed from names, units and values of a log, and as text to be corrected."""
 
+import itertools
 import json
 import os
 import re
@@ -57,7 +58,7 @@ _ROLLS = r'speed|spd|geschw|geschwindigkeit|v|vel|kmh|rpm|drehzahl|n|w|omega'
 _TORQUE_WORDS = r'torque|trq|tq|tor|moment|md'
 _TORQUE = rf'{_TORQUE_WORDS}|m|t'
 _ENGINE = r'engine|eng|motor|mot|crank|crankshaft|ice'
-_CLUTCH = r'clutch\d?|clu|cl|kupplung\d?|kup\d?|k1|k2|c1|c2'
+_CLUTCH = r'clutch\d?|clu|cl\d?|kupplung\d?|kup\d?|k1|k2|c1|c2'
 _ASKED = r'request|req|demand|dem|soll|target|tgt|desired|des|cmd|command|setpoint|ref|reference'
 _NAMES: Mapping[str, _Words] = {
     TIME: _Words((r'time|zeit|t|timestamp|timestamps|zeitpunkt',)),
@@ -72,8 +73,11 @@ _NAMES: Mapping[str, _Words] = {
     'engine_torque': _Words((_ENGINE, _TORQUE), f'{_ASKED}|{_CLUTCH}|friction|loss'),
     'engine_speed': _Words((_ENGINE, _SPEED), f'{_ASKED}|idle|{_TORQUE_WORDS}'),
     'shaft_speed': _Words(
-        (r'shaft|input|inp|primary|welle|ein|eing|eingang|eingangswelle|getriebeeingang', _SPEED),
-        f'{_ASKED}|output|engine|motor|wheel|{_TORQUE_WORDS}',
+        (
+            r'shaft|input|inp|in\d?|primary|welle|ein|eing|eingang|eingangswelle|getriebeeingang',
+            _SPEED,
+        ),
+        f'{_ASKED}|output|engine|eng|motor|wheel|vehicle|veh|{_TORQUE_WORDS}',
     ),
     'wheel_speed': _Words((r'wheel|whl|rad', _ROLLS), f'{_ASKED}|vehicle'),
     'vehicle_accel': _Words(
@@ -124,14 +128,19 @@ class Guess:
             lines.append(f'  {name}: {{{", ".join(parts)}}}{remark}')
         missing = [name for name in needed if name not in self.columns.columns]
         for name in missing:
-            unit = _OF_SI[QUANTITIES[name].unit][0]
             lines.append(
-                f'#  {name}: {{column: "?", unit: "{unit}"}}   # needed: put in its column'
+                f'#  {name}: {{column: "?", unit: "{self._usual_unit(name)}"}}   '
+                '# needed: put in its column, and remove the # before it'
             )
         if missing and self.left:
             left = (json.dumps(each, ensure_ascii=False) for each in self.left)
             lines.append(f'# Columns that are not taken: {", ".join(left)}')
         return '\n'.join(lines)
+
+    def _usual_unit(self, quantity: str) -> str:
+        """Return the unit that most columns of this kind have; its SI unit without such ones."""
+        units = _OF_SI[QUANTITIES[quantity].unit]
+        return max(units, key=[each.unit for each in self.columns.columns.values()].count)
 
 
 def guessed_columns(
@@ -194,15 +203,13 @@ def _words(name: str) -> list[str]:
 
 def _matches(words: _Words, name: str) -> bool:
     """Return whether each group has a word of its own in the name, and none is excluded."""
-    left = _words(name)
-    if words.without and any(re.fullmatch(words.without, each) for each in left):
+    found = _words(name)
+    if words.without and any(re.fullmatch(words.without, each) for each in found):
         return False
-    for group in words.groups:
-        taken = next((each for each in left if re.fullmatch(group, each)), None)
-        if taken is None:
-            return False
-        left.remove(taken)
-    return True
+    return any(
+        all(map(re.fullmatch, words.groups, each))
+        for each in itertools.permutations(found, len(words.groups))
+    )
 
 
 def _unit_in(name: str, stated: str) -> str:

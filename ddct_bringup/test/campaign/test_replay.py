@@ -139,8 +139,8 @@ def _another_row(results: Path, index: int, runs: int) -> dict[str, object]:
 @pytest.mark.parametrize(
     ('arguments', 'words'),
     [
-        (['--index', '2'], f'{RESULTS}: it has no row 2'),
-        (['--index', '-1'], f'{RESULTS}: it has no row -1'),
+        (['--index', '2'], f'{RESULTS}: it has no row 2: the rows are 0 to 1'),
+        (['--index', '-1'], f'{RESULTS}: it has no row -1: the rows are 0 to 1'),
     ],
 )
 def test_a_missing_row_is_reported(

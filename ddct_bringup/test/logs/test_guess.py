@@ -57,6 +57,15 @@ def guessed(folder: Path, columns: dict[str, float]) -> Guess:
                 'vehicle_accel': ('ax_g', 'g'),
             },
         ),
+        (
+            {'t_s': 1, 'N_IN1_rpm': 9, 'TQ_CL1_Nm': 9, 'V_VEH_kmh': 9},
+            {
+                'time': ('t_s', 's'),
+                'clutch_torque': ('TQ_CL1_Nm', 'N m'),
+                'shaft_speed': ('N_IN1_rpm', 'rpm'),
+                'vehicle_speed': ('V_VEH_kmh', 'km/h'),
+            },
+        ),
     ],
 )
 def test_usual_names_are_taken_for_their_quantities(
@@ -87,7 +96,8 @@ def test_what_is_needed_and_not_recognised_is_a_line_to_complete_with_the_column
 ) -> None:
     guess = guessed(tmp_path, {'t': 0.01, 'EngSpd_rpm': 900, 'x17_rpm': 800, 'torque b': 9})
     text = guess.text('a.csv', tmp_path, ('engine_speed', 'shaft_speed', 'clutch_torque'))
-    assert '#  shaft_speed: {column: "?", unit: "rad/s"}' in text
+    assert '#  shaft_speed: {column: "?", unit: "rpm"}' in text
+    assert 'remove the # before it' in text
     assert '#  clutch_torque: {column: "?", unit: "N m"}' in text
     assert '"x17_rpm", "torque b"' in text.splitlines()[-1]
     (tmp_path / 'map.yaml').write_text(text)

@@ -79,7 +79,9 @@ class EngineLimits(OptionGroup, prefix='engine_limits.'):
             given = f'goes from {speeds[0]:g} to {speeds[-1]:g} rad/s' if speeds else 'is empty'
             raise ParameterError(
                 f'engine_limits.speed_rad_s {given}: the torque curves must cover the speeds from '
-                f'stall_rad_s, {self.stall_rad_s:g}, to over_rev_rad_s, {self.over_rev_rad_s:g}',
+                f'stall_rad_s, {self.stall_rad_s:g}, to over_rev_rad_s, {self.over_rev_rad_s:g}: '
+                'extend the curves, or give cut_rad_s, resume_rad_s and over_rev_rad_s of this '
+                'engine (those left out are of the base car)',
                 key='engine_limits.speed_rad_s',
             )
 

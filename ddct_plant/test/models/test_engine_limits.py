@@ -127,3 +127,8 @@ def test_an_engine_driven_beyond_its_limit_has_over_revved():
 def test_bad_limits_are_named(bad, key):
     with refused(ParameterError, key=key):
         EngineLimits(**bad)
+
+
+def test_curves_that_end_early_are_refused_with_the_keys_of_the_rev_limits():
+    with pytest.raises(ParameterError, match='give cut_rad_s, resume_rad_s and over_rev_rad_s of'):
+        EngineLimits(speed_rad_s=(0.0, 600.0), full_load_n_m=(0.0, 9.0), friction_n_m=(1.0, 1.0))

@@ -17,9 +17,15 @@ from ddct_bringup.identification.from_log.fit import fit_log
 from ddct_bringup.identification.from_log.log_columns import columns_of
 from ddct_bringup.identification.from_log.log_fit_report import LogFitReport, print_fit
 from ddct_bringup.identification.from_log.prediction import predict
-from ddct_bringup.identification.from_log.stretches import TORQUES, stretches_of
+from ddct_bringup.identification.from_log.result import LogFit
+from ddct_bringup.identification.from_log.stretches import (
+    TORQUES,
+    KnownLoad,
+    Stretch,
+    stretches_of,
+)
 from ddct_bringup.identification.from_log.unknowns import PARAMETERS
-from ddct_bringup.identification.from_log.verdict import reasons_against
+from ddct_bringup.identification.from_log.verdict import reasons_against, reasons_in_log
 from ddct_bringup.logs.columns import ColumnMap
 from ddct_bringup.logs.log import SPEEDS, MeasuredLog, read_log
 from ddct_plant.base.clutch_kinds import STICK_SLIP
@@ -34,6 +40,7 @@ from ddct_plant.scenario.choices.scenarios import DEFAULT_CAR
 from ddct_plant.scenario.chosen import scenario_of as base_scenario
 from ddct_plant.scenario.nouns.keys import CAR, NOUNS
 from ddct_plant.scenario.overrides import parsed_override
+from ddct_plant.scenario.scenario import Scenario
 
 NEEDED = (*SPEEDS, *TORQUES)
 """Quantities that a log must have."""
@@ -121,16 +128,7 @@ def identify_log(options: argparse.Namespace) -> int:
     drag = drag_of(base)
     # Before the fit, which takes long, because they raise the errors of the logs.
     stretches, predicted = stretches_of(fitted, drag), stretches_of(held_out, drag)
-    count = itertools.count(1)
-    with Progress('fitting the driveline, evaluations') as progress:
-        fit = fit_log(
-            fitted,
-            start.driveline,
-            drag,
-            options.fix,
-            columns.known_delays,
-            lambda: progress.update(next(count)),
-        )
+    fit = _fitted(options, columns, start, drag, fitted, stretches)
     predictions = predict(fit, predicted)
     reasons = reasons_against(fit, predictions, stretches)
     report = LogFitReport(
@@ -152,6 +150,33 @@ def identify_log(options: argparse.Namespace) -> int:
         if options.json != STDOUT:
             _print_written(out, drive, found)
     return 0
+
+
+def _fitted(
+    options: argparse.Namespace,
+    columns: ColumnMap,
+    start: Scenario,
+    drag: KnownLoad,
+    log: MeasuredLog,
+    stretches: Sequence[Stretch],
+) -> LogFit:
+    """Return the fit; where there is none, raise DdctError with what is wrong with the log."""
+    count = itertools.count(1)
+    try:
+        with Progress('fitting the driveline, evaluations') as progress:
+            return fit_log(
+                log,
+                start.driveline,
+                drag,
+                options.fix,
+                columns.known_delays,
+                lambda: progress.update(next(count)),
+            )
+    except DdctError as error:
+        if reasons := reasons_in_log(stretches):
+            text = str(error).rstrip('.')
+            raise DdctError(f'{text}: {reasons[0]}', place=options.log) from error
+        raise
 
 
 def _print_written(out: OutFolder, drive: LogDrive, origins: Sequence[str]) -> None:

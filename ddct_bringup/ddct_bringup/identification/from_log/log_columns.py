@@ -32,6 +32,12 @@ def columns_of(options: argparse.Namespace, car: Scenario, needed: Sequence[str]
         return load_columns(options.columns)
     own = own_columns(TIME, *needed, optional=(VEHICLE_SPEED,))
     if options.log.suffix == '.mcap' or not options.log.is_file():  # read_log refuses what is none
+        if options.guess:
+            bag = options.log.exists()
+            why = (
+                'a bag needs no column map: leave out --guess' if bag else 'no such file or folder'
+            )
+            raise DdctError(why, place=options.log)
         return own
     source = source_of(options.log, options.dbc)
     names = {name for key in (TIME, *needed) for name in own.columns[key].names}

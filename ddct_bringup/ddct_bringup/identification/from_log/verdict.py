@@ -8,7 +8,13 @@ import numpy as np
 
 from ddct_bringup.identification.from_log.prediction import SpeedPrediction
 from ddct_bringup.identification.from_log.result import LogFit
-from ddct_bringup.identification.from_log.stretches import INPUTS, LOAD, TORQUES, Stretch
+from ddct_bringup.identification.from_log.stretches import (
+    FEWEST_SAMPLES,
+    INPUTS,
+    LOAD,
+    TORQUES,
+    Stretch,
+)
 from ddct_bringup.identification.from_log.unknowns import DAMPINGS
 from ddct_bringup.logs.columns import MOST_DELAY_S
 from ddct_bringup.logs.log import SPEEDS
@@ -39,6 +45,12 @@ _SMOOTHED = 5
 """Samples over which acceleration and torque are averaged to detect a wrong sign."""
 _FOLLOWS = 0.5
 """Negative correlation of the engine's acceleration with C_m - C_f that means a wrong sign."""
+_LOCKED = 0.01
+"""Largest slip of plates that count as locked, over the engine speed."""
+_EXCESS = 0.05
+"""Least excess of C_f over C_m that noise does not explain, over the largest C_m."""
+_OFTEN = 0.25
+"""Share of the samples with this excess that no delay of a column explains."""
 
 
 def reasons_against(
@@ -46,10 +58,18 @@ def reasons_against(
 ) -> list[str]:
     """Return the reasons to refuse a fit to `stretches`, as sentences; none to accept it."""
     return [
-        *_speed_reasons(stretches),
-        *_sign_reasons(stretches),
+        *reasons_in_log(stretches),
         *_error_reasons(predictions),
         *_parameter_reasons(fit),
+    ]
+
+
+def reasons_in_log(stretches: Sequence[Stretch]) -> list[str]:
+    """Return the reasons that need no fit, as sentences."""
+    return [
+        *_speed_reasons(stretches),
+        *_capacity_reasons(stretches),
+        *_sign_reasons(stretches),
     ]
 
 
@@ -61,6 +81,32 @@ def _speed_reasons(stretches: Sequence[Stretch]) -> Iterator[str]:
             f'engine_speed is {median:.4g} rad/s ({median * 30.0 / np.pi:.4g} rpm) in the middle, '
             f'of cars it is {lowest:g} to {highest:g} rad/s: check its unit'
         )
+
+
+def _capacity_reasons(stretches: Sequence[Stretch]) -> Iterator[str]:
+    """Detect a C_f above C_m in locked plates while the engine speeds up by its own torque."""
+    engine, clutch = np.concatenate([_accelerating_locked(each) for each in stretches], axis=1)
+    if len(engine) < FEWEST_SAMPLES:
+        return
+    excess = clutch - engine
+    wrong = excess > _EXCESS * engine.max()
+    if wrong.mean() > _OFTEN:
+        yield (
+            f'while the plates are locked and the engine speeds up, {TORQUES[1]} exceeds '
+            f'{TORQUES[0]} by {np.median(excess[wrong]):.3g} N m: is it the capacity or the '
+            'request of the clutch, not the torque that it transmits, or are the two swapped?'
+        )
+
+
+def _accelerating_locked(stretch: Stretch) -> np.ndarray:
+    """Return C_m and C_f in N m where locked plates speed up and C_m drives, (2, m)."""
+    speed, shaft = stretch.speeds[:, 0], stretch.speeds[:, 1]
+    torques = stretch.torques[:, INPUTS.places(*TORQUES)].T
+    engine, clutch = (np.interp(stretch.time_s, stretch.grid_s, each) for each in torques)
+    smooth = np.ones(_SMOOTHED) / _SMOOTHED
+    accel = np.convolve(np.gradient(speed, stretch.time_s), smooth, 'same')
+    locked = np.abs(speed - shaft) <= _LOCKED * speed
+    return np.stack([engine, clutch])[:, locked & (accel > 0.0) & (engine > 0.0)]
 
 
 def _sign_reasons(stretches: Sequence[Stretch]) -> Iterator[str]:
