@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Without ROS a headless run works, and a graph ends with one line; nightly all programs do."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 from support.declared import ROS
+from support.documented import ROOT
 from support.runs import bag_bytes, plan, record
 from support.without_ros import fill_site, python
 
@@ -18,6 +21,12 @@ pytestmark = pytest.mark.slow
 @pytest.fixture(scope='module')
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return fill_site(tmp_path_factory.mktemp('site'))
+
+
+def test_help_of_the_trial_by_pip_tries_nothing() -> None:
+    command = [sys.executable, str(ROOT / 'tools' / 'without_ros'), '--help']
+    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60)
+    assert done.stdout.startswith('usage: python tools/without_ros')
 
 
 def test_ros_is_not_there(site: Path, tmp_path: Path) -> None:
