@@ -22,7 +22,7 @@ from ddct_controllers.plugins import CONTROLLERS, factory_spec
 from ddct_controllers.printed import PRINTED_CONTROLLERS, printed_spec
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
 from ddct_controllers.synthesised import SYNTHESISED, synthesised_design
-from ddct_plant.base.errors import DdctError, ParameterError, require_name
+from ddct_plant.base.errors import DdctError, ParameterError, choices_hint, require_name
 from ddct_plant.program.own_process import ProcessEndedError, in_own_process
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import KnownSettings
@@ -171,6 +171,22 @@ def controller_label(chosen: Chosen) -> str:
     return controller_spec(chosen).name
 
 
+def controllers_of(text: str) -> list[str]:
+    """
+    Return the controllers in the value of --controllers that names some.
+
+    Raise ParameterError for none, and for one that is given twice.
+    """
+    names = [name.strip() for name in text.split(',') if name.strip()]
+    if not names:
+        raise ParameterError('--controllers is empty: name at least one, or all')
+    labels = [controller_label(name) for name in names]
+    for label in labels:
+        if labels.count(label) > 1:
+            raise ParameterError(f'--controllers names {label} twice: name each once')
+    return names
+
+
 def _third_party(name: str) -> ControllerSpec[Controller]:
     if point := CONTROLLERS.point(name):
         require_name('controller name', name)  # it names the folder of the bag
@@ -181,9 +197,8 @@ def _third_party(name: str) -> ControllerSpec[Controller]:
             'library in C, a YAML file that names it (docs/controllers/files.md)',
             key=name,
         )
-    choices = ', '.join(controller_names())
     raise ParameterError(
-        f'unknown controller {name!r}: choose from {choices}, or give the path of a controller '
-        'file, .py or .yaml',
+        f'unknown controller {name!r}: {choices_hint(name, controller_names())}, or give the '
+        'path of a controller file, .py or .yaml',
         key=name,
     )

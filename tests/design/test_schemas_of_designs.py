@@ -15,7 +15,7 @@ from ddct_controllers.workflows.design_program import main
     ('arguments', 'name'),
     [
         (['plant'], 'plant'),
-        (['margins', '--controller', 'pi'], 'frequency'),
+        (['margins', '--controllers', 'pi'], 'frequency'),
         pytest.param(['loop-shaping'], 'loop_shaping_thesis', marks=pytest.mark.nightly),
         pytest.param(
             ['h-infinity', '--weights', 'sampled'], 'h_infinity', marks=pytest.mark.nightly

@@ -124,7 +124,7 @@ def test_a_bad_scenario_file_is_named_with_its_key(
     ('options', 'words'),
     [
         (['--headless', '--single-process'], 'not allowed with'),
-        (['--wear-gain', 'old'], "invalid float value: 'old'"),
+        (['--wear-gain', 'old'], "'old' is no number: give a number alone"),
         (['--seed', '1.5'], "invalid int value: '1.5'"),
         (['--speed', '3'], 'unrecognized arguments'),
     ],

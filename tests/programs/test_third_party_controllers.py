@@ -103,7 +103,7 @@ def test_a_controller_that_cannot_be_built_stops_only_the_programs_that_need_it(
     complaint = "controller 'absent': the entry point no_such_package:make cannot be loaded"
     assert words.count(complaint) == words.count('no_such_package:make') == 1
     assert re.search(r'^(controllers:)? *pi\b', printed.out, re.MULTILINE)
-    monkeypatch.setattr(sys, 'argv', ['ddct', 'design', 'margins', '--controller', 'absent'])
+    monkeypatch.setattr(sys, 'argv', ['ddct', 'design', 'margins', '--controllers', 'absent'])
     assert ddct.main() == 1
 
 

@@ -5,7 +5,6 @@
 from collections.abc import Iterable, Sequence
 
 from ddct_controllers.registry import (
-    controller_label,
     controller_names,
     controller_spec,
 )
@@ -17,22 +16,6 @@ from ddct_plant.program.printed_table import print_note, print_table
 from ddct_plant.program.table import TextTable, Weight, with_reasons
 from ddct_plant.scenario.choices.scenarios import CHOICES, packaged_names
 from ddct_plant.scenario.choices.settings import ARCHITECTURES, MODES
-
-
-def controllers_of(text: str) -> list[str]:
-    """
-    Return the controllers in the value of --controllers that names some.
-
-    Raise ParameterError for none, and for one that is given twice.
-    """
-    names = [name.strip() for name in text.split(',') if name.strip()]
-    if not names:
-        raise ParameterError('--controllers is empty: name at least one, or all')
-    labels = [controller_label(name) for name in names]
-    for label in labels:
-        if labels.count(label) > 1:
-            raise ParameterError(f'--controllers names {label} twice: name each once')
-    return names
 
 
 def metrics_of(option: str, text: str, known: Iterable[str]) -> list[str]:

@@ -44,7 +44,7 @@ PROGRAMS: dict[str, Callable[[], object]] = {
     'campaign': _campaign,
     'check': lambda: check_controller.main(['pi']),
     'design loop-shaping': lambda: design_program.main(['loop-shaping']),
-    'design margins': lambda: design_program.main(['margins', '--controller', 'ls8']),
+    'design margins': lambda: design_program.main(['margins', '--controllers', 'ls8']),
     'design plant': lambda: design_program.main(['plant']),
     'identify': lambda: identify.main([]),
     'identify --as-printed': lambda: identify.main(['--as-printed']),

@@ -15,6 +15,7 @@ from ddct_plant.base.errors import (
     DdctError,
     ForeignError,
     ParameterError,
+    choices_hint,
     require_number,
 )
 from ddct_plant.files.input_file import without_folder
@@ -64,9 +65,9 @@ def _require_new(label: str, file: str, own: Iterable[str]) -> None:
 def _entry_point(name: str, own: Iterable[str]) -> Callable[[KnownSettings], Any]:
     if point := HANDOVERS.point(name):
         return HANDOVERS.load(point)
-    names = ', '.join([*own, *HANDOVERS.names()])
     raise ParameterError(
-        f'unknown handover {name!r}: choose from {names}, or give the path of a Python file',
+        f'unknown handover {name!r}: {choices_hint(name, [*own, *HANDOVERS.names()])}, or '
+        'give the path of a Python file',
         key='handover',
     )
 

@@ -15,15 +15,19 @@ from ddct_controllers.from_file.designed import DesignedController, load_designe
 from ddct_controllers.registry import controller_names
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.output_file import STDOUT, require_new, write_text
-from ddct_plant.program.command_line import show_and_write
+from ddct_plant.program.command_line import number_in, show_and_write
 from ddct_plant.program.printed_table import print_tables
 from ddct_plant.program.table import TextTable
+from ddct_plant.scenario.choices.command_line import add_scenario_options
+from ddct_plant.scenario.chosen import scenario_of
+from ddct_plant.scenario.differences import changed_values, scenario_title
+from ddct_plant.scenario.scenario import Scenario
 
 OptionTable = Mapping[str, Mapping[str, Any]]
 """Arguments of `add_argument` by the option's name."""
 _OPTIONS: OptionTable = {
-    '--rise-time': {'type': float, 'metavar': 'S', 'help': 'longest rise time'},
-    '--overshoot': {'type': float, 'metavar': 'PERCENT', 'help': 'largest overshoot'},
+    '--rise-time': {'type': number_in('s'), 'metavar': 'S', 'help': 'longest rise time'},
+    '--overshoot': {'type': number_in('%'), 'metavar': 'PERCENT', 'help': 'largest overshoot'},
     '--name': {'metavar': 'NAME', 'help': 'name of the controller (default: mine)'},
     '--out': {'type': Path, 'metavar': 'DIR', 'help': 'write the controller and its charts'},
     '--overwrite': {
@@ -39,6 +43,23 @@ def add_design_options(parser: argparse.ArgumentParser, own: OptionTable) -> Non
     """Add a method's own options, specifications, and outputs; None is an option not set."""
     for name, settings in {**own, **_OPTIONS}.items():
         parser.add_argument(name, **settings)
+    add_scenario_options(parser, set_example='driveline.halfshaft_stiffness=8000')
+
+
+def chosen_plant(options: argparse.Namespace) -> tuple[Scenario, str]:
+    """Return the scenario whose driveline and actuator a design is for, and its title."""
+    scenario = scenario_of(options, options.overrides)
+    return scenario, scenario_title(scenario.name, changed_values(scenario))
+
+
+def fraction_of(percent: float) -> float:
+    """Return an overshoot in % as a fraction; raise ParameterError for one given as a fraction."""
+    if 0.0 < percent < 1.0:
+        raise ParameterError(
+            f'--overshoot {percent:g} is below 1 %: give per cent, such as {100.0 * percent:g}',
+            key='overshoot',
+        )
+    return percent / 100.0
 
 
 def free_name(options: argparse.Namespace) -> str:
@@ -64,7 +85,10 @@ def show(options: argparse.Namespace, tables: Iterable[TextTable], record: objec
 
 
 def write_design(
-    options: argparse.Namespace, designed: DesignedController, specifications: TimeSpecifications
+    options: argparse.Namespace,
+    designed: DesignedController,
+    specifications: TimeSpecifications,
+    scenario: Scenario,
 ) -> None:
     """Write charts and, last, the controller, if requested; raise DdctError on failure."""
     path = _path(options, designed.name)
@@ -77,7 +101,9 @@ def write_design(
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise DdctError(f'--out {path.parent}: cannot be made ({error.strerror})') from error
-    write_design_charts(path.parent, designed, specifications)
+    write_design_charts(
+        path.parent, designed, specifications, scenario.driveline, scenario.actuator
+    )
     write_text(str(path), designed.to_yaml())
     if options.json != STDOUT:
         run_it = ('ddct', 'compare', '--controllers', str(path), '--out', f'runs/{designed.name}')

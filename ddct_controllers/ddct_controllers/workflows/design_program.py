@@ -34,7 +34,7 @@ examples:
   ddct design loop-shaping --rise-time 0.6 --overshoot 14 --name mine --out designs
   ddct design h-infinity                                   Chapter 3, step by step
   ddct design mpc --export control_unit --controller mpc3  C for a control unit
-  ddct design margins --controller all                     the sampled loop with hold and delay
+  ddct design margins --controllers all                    the sampled loop with hold and delay
   ddct design plant --export plant.m                       the plant's equations and numbers
 
 Each workflow has its own --help. The thesis's numbers, figures and studies: ddct thesis."""

@@ -6,11 +6,10 @@ import argparse
 import sys
 from typing import Any
 
-from ddct_controllers.design.analysis.loops import IDENTIFIED_DRIVELINE, plant_in_rpm
+from ddct_controllers.design.analysis.loops import plant_in_rpm
 from ddct_controllers.design.loop_shaping.design import required_integrators
 from ddct_controllers.design.loop_shaping.record import (
     design_record,
-    provenance,
     thesis_record,
 )
 from ddct_controllers.design.loop_shaping.search import STRUCTURES, design_loop_shaping
@@ -20,6 +19,8 @@ from ddct_controllers.from_file.designed import DesignedController
 from ddct_controllers.workflows.design_output import (
     OptionTable,
     add_design_options,
+    chosen_plant,
+    fraction_of,
     free_name,
     show,
     write_design,
@@ -40,6 +41,7 @@ examples:
   ddct design loop-shaping
   ddct design loop-shaping --rise-time 0.6 --overshoot 14
   ddct design loop-shaping --rise-time 0.3 --overshoot 10 --name quick --out designs
+  ddct design loop-shaping --rise-time 0.6 --overshoot 14 --car city7    for another car
   ddct compare --controllers ls8,designs/quick.yaml --headless --out runs/quick"""
 _DISTURBANCES = {'none': None, 'step': 0, 'ramp': 1}
 """Order h_p of the engine torque that must leave no error; without one G_c has no integrator."""
@@ -50,7 +52,11 @@ _OPTIONS: OptionTable = {
     },
     '--structure': {'choices': STRUCTURES, 'help': 'as G_c1 or as G_c2 (default: either)'},
 }
-_NEEDS_SPECIFICATIONS = ('disturbance', 'structure', 'name', 'out', 'overwrite')
+_NEEDS_SPECIFICATIONS = (
+    *('disturbance', 'structure', 'name', 'out', 'overwrite'),
+    *('scenario', 'car', 'drive', 'set'),
+)
+"""Options that the workflow of Chapter 2 does not have: it is for the thesis's car."""
 
 
 def add_parser(subparsers: Any) -> None:
@@ -74,8 +80,9 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _show_thesis(options: argparse.Namespace) -> None:
+    given = vars(options) | {'set': options.overrides or None}
     for name in _NEEDS_SPECIFICATIONS:
-        if getattr(options, name) is not None:
+        if given[name] is not None:
             raise ParameterError(f'--{name} needs specifications: add --rise-time and --overshoot')
     record = thesis_record()
     show(options, thesis_tables(record).values(), record)
@@ -87,17 +94,21 @@ def _design_controller(options: argparse.Namespace) -> None:
         raise ParameterError(
             f'{missing} is missing: a design needs --rise-time and --overshoot', key=missing
         )
-    specifications = TimeSpecifications(options.rise_time, options.overshoot / 100.0)
+    specifications = TimeSpecifications(options.rise_time, fraction_of(options.overshoot))
     name = free_name(options)
+    scenario, title = chosen_plant(options)
+    driveline = scenario.driveline
     order = _DISTURBANCES[options.disturbance or 'step']
     integrators = 0
     if order is not None:
-        disturbance_path = engine_to_slip(IDENTIFIED_DRIVELINE)
-        integrators = required_integrators(plant_in_rpm(), disturbance_path, order)
+        disturbance_path = engine_to_slip(driveline)
+        integrators = required_integrators(plant_in_rpm(driveline), disturbance_path, order)
     print('ddct design loop-shaping: searching', file=sys.stderr, flush=True)
     structures = (options.structure,) if options.structure else STRUCTURES
-    design = design_loop_shaping(specifications, integrators, IDENTIFIED_DRIVELINE, structures)
-    designed = DesignedController(name, design.controller, to_json(provenance(design)))
-    record = design_record(name, design)
+    design = design_loop_shaping(
+        specifications, integrators, driveline, structures, scenario.actuator
+    )
+    record = design_record(name, design, title)
+    designed = DesignedController(name, design.controller, to_json(record.provenance))
     show(options, design_tables(record), record)
-    write_design(options, designed, specifications)
+    write_design(options, designed, specifications, scenario)

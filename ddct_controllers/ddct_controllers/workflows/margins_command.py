@@ -10,6 +10,7 @@ from typing import Any
 from ddct_controllers.design.analysis.loop_quantities import LOOP_QUANTITY_OF
 from ddct_controllers.registry import (
     controller_label,
+    controllers_of,
     require_known_controllers,
     working_controllers,
 )
@@ -27,7 +28,7 @@ from ddct_plant.program.table import TextTable, Weight, text_or_dash, with_reaso
 from ddct_plant.scenario.choices.command_line import add_scenario_options
 from ddct_plant.scenario.chosen import scenario_of
 from ddct_plant.scenario.differences import changed_values, scenario_title
-from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
+from ddct_plant.scenario.settings import CaseSettings, LinearSettings, RunSettings
 
 _UNDEFINED = {
     'w_c': '|L| is below 1 at every frequency',
@@ -53,9 +54,9 @@ to 1.3 and all driveline parameters +-20 %: the highest M_s and the number of un
 _EXAMPLES = """\
 examples:
   ddct design margins
-  ddct design margins --controller ls8 --wear-gain 1.3 --json -
-  ddct design margins --controller ls8 --car city7          in another car, or mycar.yaml
-  ddct design margins --controller hinf2 --set actuator.delay_s=0.05"""
+  ddct design margins --controllers ls8,hinf2 --wear-gain 1.3 --json -
+  ddct design margins --controllers ls8 --car city7          in another car, or mycar.yaml
+  ddct design margins --controllers hinf2 --set actuator.delay_s=0.05"""
 
 
 def add_parser(subparsers: Any) -> None:
@@ -65,7 +66,12 @@ def add_parser(subparsers: Any) -> None:
         description=_DESCRIPTION,
         epilog=_EXAMPLES,
     )
-    parser.add_argument('--controller', default='all', metavar='NAME|FILE|all')
+    parser.add_argument(
+        '--controllers',
+        default='all',
+        metavar='A,B,...|all',
+        help='names or files (default: all)',
+    )
     parser.add_argument(
         '--wear-gain', type=float, default=1.0, metavar='X', help='K_usura, 1 if new'
     )
@@ -76,17 +82,18 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the table, write the JSON, and return the exit code."""
-    known = KnownSettings(scenario_of(options, options.overrides))
+    known = LinearSettings(scenario_of(options, options.overrides))
     settings = RunSettings(known, CaseSettings(wear_gain=options.wear_gain))
-    every = options.controller == 'all'
-    labels = [] if every else [controller_label(options.controller)]
+    every = options.controllers == 'all'
+    chosen = [] if every else controllers_of(options.controllers)
+    labels = [controller_label(each) for each in chosen]
     require_known_controllers(settings.scenario, labels)
     report = partial(complain, 'ddct design')
-    names = working_controllers(settings.known, report) if every else [options.controller]
+    names = working_controllers(settings.known, report) if every else chosen
     evidence = frequency_evidence(names, settings, report if every else None)
     if not linear_entries(evidence):
         raise DdctError(
-            f'{options.controller} is not linear: it has no frequency response; '
+            f'{options.controllers} is not linear: it has no frequency response; '
             'choose a controller that has a linear_model, or all'
         )
     show_and_write(options.json, evidence, lambda: _show(evidence, settings))

@@ -39,7 +39,11 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument('--controller', metavar='NAME', default='mpc3', help='(default: mpc3)')
     add_scenario_options(parser, set_example='controllers.mpc3.torque_rate_n_m_s=500')
     parser.add_argument(
-        '--architecture', choices=ARCHITECTURES, default='detailed', help='(default: detailed)'
+        '--architecture',
+        choices=ARCHITECTURES,
+        default='detailed',
+        metavar='NAME',
+        help=f'one of {", ".join(ARCHITECTURES)} (default: detailed)',
     )
     parser.add_argument('--overwrite', action='store_true', help='replace an earlier export')
     parser.set_defaults(run=run)

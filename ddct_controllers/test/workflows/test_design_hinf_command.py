@@ -77,6 +77,14 @@ def test_a_design_that_falls_short_is_not_written_and_the_error_has_the_reason(
     assert not (tmp_path / 'designs').exists()
 
 
+def test_it_designs_for_another_car(capsys):
+    assert main(['h-infinity', '--car', 'city7']) == 0
+    shown = capsys.readouterr()
+    assert 'scenario thesis_city7' in shown.out
+    assert 'unstable at 40 of 128 corners' in shown.err
+    assert shown.err.endswith('; nothing is written\n')
+
+
 @pytest.mark.usefixtures('without_charts')
 def test_a_design_that_meets_its_specifications_is_written(tmp_path, capsys):
     options = ['--weights', 'fitted', '--rise-time', '0.5', '--overshoot', '15']
@@ -109,8 +117,9 @@ def test_a_bilinear_controller_comes_back_from_its_file(tmp_path):
     ('options', 'complaint'),
     [
         (['--rise-time', '0.02'], 'no controller meets the bounds on S and T'),
-        (['--rise-time', '0.05'], 'makes the loop with hold and delay unstable'),
+        (['--rise-time', '0.05'], 'a longer rise time, or take --weights sampled'),
         (['--rise-time', '-1'], 'rise time is -1 s'),
+        (['--overshoot', '0.08'], '--overshoot 0.08 is below 1 %: give per cent, such as 8'),
         (['--overshoot', '100'], 'overshoot is 100 %'),
         (['--low-frequency-gain', '0'], 'K, the low-frequency gain of S, is 0'),
         (['--bandwidth', 'nan'], 'w_2 is nan: give a finite number'),

@@ -80,6 +80,15 @@ def test_an_earlier_design_is_replaced_only_with_overwrite(tmp_path, capsys):
     assert main([*command, '--overwrite']) == 0
 
 
+def test_a_design_for_another_car_names_it_and_differs(capsys):
+    found = {}
+    for car in ('c635', 'city7'):
+        assert main([*OWN, '--car', car, '--json', '-']) == 0
+        found[car] = json.loads(capsys.readouterr().out)
+    assert found['city7']['scenario'] == 'thesis_city7'
+    assert found['city7']['controller'] != found['c635']['controller']
+
+
 def test_overwrite_keeps_a_file_that_is_no_controller(tmp_path, capsys):
     (tmp_path / 'mine.yaml').write_text('something: else\n', encoding='utf-8')
     assert main([*OWN, '--out', str(tmp_path), '--overwrite']) == 1
@@ -93,6 +102,8 @@ def test_overwrite_keeps_a_file_that_is_no_controller(tmp_path, capsys):
         (['--rise-time', '0.6'], '--overshoot is missing'),
         (['--overshoot', '14'], '--rise-time is missing'),
         (['--out', 'x'], '--out needs specifications'),
+        (['--car', 'city7'], '--car needs specifications'),
+        (['--set', 'gear=2'], '--set needs specifications'),
         (['--name', 'x'], '--name needs specifications'),
         (['--rise-time', '-1', '--overshoot', '14'], 'rise time is -1 s: it must be above 0'),
         (['--rise-time', '0.6', '--overshoot', '0'], 'overshoot is 0 %'),

@@ -66,13 +66,13 @@ def hinf2() -> ControllerEntry:
     """Return the evidence of Hinf2 in the thesis's scenario, as the program writes it."""
     printed = io.StringIO()
     with contextlib.redirect_stdout(printed):
-        assert run('--controller', 'hinf2', '--json', '-') == 0
+        assert run('--controllers', 'hinf2', '--json', '-') == 0
     (entry,) = json.loads(printed.getvalue())['controllers']
     return entry
 
 
 def test_json_has_nominal_wear_and_corner_quantities_and_is_alone(capsys):
-    assert run('--controller', 'ls8', '--wear-gain', '0.9', '--json', '-') == 0
+    assert run('--controllers', 'ls8', '--wear-gain', '0.9', '--json', '-') == 0
     document = json.loads(capsys.readouterr().out)
     (entry,) = document['controllers']
     assert document['conditions']['corners'] == 128
@@ -91,21 +91,21 @@ def test_the_stable_wear_gains_end_where_the_loop_becomes_unstable(hinf2, capsys
     assert stable['lowest'] == 0.0
     assert stable['highest'] == pytest.approx(1.4505, abs=0.001)
     for factor, answer in ((0.999, 'yes'), (1.001, 'no')):
-        run('--controller', 'hinf2', '--wear-gain', repr(factor * stable['highest']))
+        run('--controllers', 'hinf2', '--wear-gain', repr(factor * stable['highest']))
         assert rows(capsys.readouterr().out)['hinf2'][0] == answer
 
 
 def test_an_unstable_loop_has_null_margins_and_dashes(capsys):
-    run('--controller', 'ls3', '--wear-gain', '1.6', '--json', '-')
+    run('--controllers', 'ls3', '--wear-gain', '1.6', '--json', '-')
     point = json.loads(capsys.readouterr().out)['controllers'][0]['wear'][-1]
     assert point['stable'] is False
     assert point['gain_margin_db'] is point['sensitivity_peak'] is None
-    run('--controller', 'ls3', '--wear-gain', '1.6')
+    run('--controllers', 'ls3', '--wear-gain', '1.6')
     assert rows(capsys.readouterr().out)['ls3'][1:9] == ['-'] * 8
 
 
 def test_a_loop_that_is_unstable_with_a_new_clutch_has_no_stable_wear_gains(capsys):
-    run('--controller', 'pi', '--set', 'controllers.pi.proportional_gain=5', '--json', '-')
+    run('--controllers', 'pi', '--set', 'controllers.pi.proportional_gain=5', '--json', '-')
     entry = json.loads(capsys.readouterr().out)['controllers'][0]
     assert entry['nominal']['stable'] is False
     assert entry['stable_wear_gain'] is None
@@ -113,17 +113,23 @@ def test_a_loop_that_is_unstable_with_a_new_clutch_has_no_stable_wear_gains(caps
 
 
 def test_the_driveline_is_the_scenarios(capsys):
-    run('--controller', 'ls8', '--set', 'driveline.halfshaft_stiffness=12000', '--json', '-')
+    run('--controllers', 'ls8', '--set', 'driveline.halfshaft_stiffness=12000', '--json', '-')
     stiff = json.loads(capsys.readouterr().out)['controllers'][0]
-    run('--controller', 'ls8', '--json', '-')
+    run('--controllers', 'ls8', '--json', '-')
     usual = json.loads(capsys.readouterr().out)['controllers'][0]
     assert stiff['nominal']['gain_margin_db'] != usual['nominal']['gain_margin_db']
+
+
+def test_a_car_that_could_not_make_the_drive_has_margins_too(capsys):
+    """The torques of the thesis's drive are more than the engine of the city7 gives."""
+    assert run('--controllers', 'ls8,pi', '--car', 'city7') == 0
+    assert [*rows(capsys.readouterr().out)] == ['ls8', 'pi']
 
 
 def test_the_actuator_is_the_scenarios(capsys):
     """Hinf2 bears 14 ms more than the printed 10 ms; with 50 ms its slip grows in a run."""
     delayed = ['--set', 'actuator.delay_s=0.05', '--set', 'actuator.bandwidth_factor=1.2']
-    assert run('--controller', 'hinf2', *delayed, '--json', '-') == 0
+    assert run('--controllers', 'hinf2', *delayed, '--json', '-') == 0
     document = json.loads(capsys.readouterr().out)
     assert document['conditions']['delay_s'] == 0.05
     assert document['conditions']['bandwidth_factor'] == 1.2
@@ -139,7 +145,7 @@ def test_the_delay_margin_is_the_additional_delay_that_makes_a_loop_unstable(
 ):
     margin = hinf2['nominal']['delay_margin_s']
     assert 0.013 < margin < 0.015
-    run('--controller', 'hinf2', '--set', f'actuator.delay_s={1e-3 * delay_ms:g}')
+    run('--controllers', 'hinf2', '--set', f'actuator.delay_s={1e-3 * delay_ms:g}')
     stable = 1e-3 * delay_ms < 0.01 + margin
     assert rows(capsys.readouterr().out)['hinf2'][0] == ('yes' if stable else 'no')
 
@@ -147,7 +153,8 @@ def test_the_delay_margin_is_the_additional_delay_that_makes_a_loop_unstable(
 @pytest.mark.parametrize(
     ('arguments', 'message'),
     [
-        (['--controller', 'ls10'], "unknown controller 'ls10': choose from"),
+        (['--controllers', 'ls10'], "unknown controller 'ls10': did you mean ls1?"),
+        (['--controllers', 'ls8,ls8'], 'names ls8 twice'),
         (['--wear-gain', '0'], 'wear_gain is 0'),
         (['--scenario', 'none'], 'none'),
     ],
@@ -161,7 +168,7 @@ def test_bad_input_is_named_in_one_line(arguments, message, capsys):
 
 def test_a_controller_that_is_not_linear_is_refused_with_the_reason(stub, capsys):
     stub(None)
-    assert run('--controller', 'ls1') == 1
+    assert run('--controllers', 'ls1') == 1
     assert 'ls1 is not linear: it has no frequency response' in capsys.readouterr().err
 
 
@@ -175,7 +182,7 @@ def test_controllers_that_are_not_linear_are_named_below_the_table(monkeypatch, 
 
 def test_a_linear_model_that_cannot_be_used_names_its_controller(stub, capsys):
     stub(StateSpace(ONE, ONE, ONE, ONE))
-    assert run('--controller', 'ls1') == 1
+    assert run('--controllers', 'ls1') == 1
     message = "controller 'ls1': its linear_model cannot be used: controller is continuous"
     assert message in capsys.readouterr().err
 
@@ -192,7 +199,7 @@ def test_a_linear_model_that_cannot_be_used_names_its_controller(stub, capsys):
 )
 def test_a_linear_model_of_the_wrong_kind_is_one_line(stub, capsys, model, complaint):
     stub(model)
-    assert run('--controller', 'ls1') == 1
+    assert run('--controllers', 'ls1') == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("ddct design: controller 'ls1': its linear_model cannot be used: ")
     assert complaint in line
@@ -214,11 +221,11 @@ def test_a_linear_model_that_fails_is_one_line(stub, monkeypatch, capsys):
     stub(None)
     broken = evidence.make_controller('ls1', None)
     monkeypatch.setattr(type(broken), 'linear_model', lambda self: 1 / 0)
-    assert run('--controller', 'ls1') == 1
+    assert run('--controllers', 'ls1') == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert 'cannot be used: ZeroDivisionError: division by zero' in line
 
 
 def test_options_of_a_controller_that_is_nowhere_are_refused(capsys):
-    assert run('--controller', 'pi', '--set', 'controllers.pii.gain=1') == 1
+    assert run('--controllers', 'pi', '--set', 'controllers.pii.gain=1') == 1
     assert 'controllers.pii: there is no such controller' in capsys.readouterr().err

@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors for users, printed in one line, and the checks of values that raise them."""
 
+import difflib
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from numbers import Real
 from typing import Self
 
@@ -138,12 +139,23 @@ def require_name(what: str, name: object) -> None:
         )
 
 
+def did_you_mean(name: object, known: Iterable[str], prefix: str = '') -> str:
+    """Return a question with the known name that is closest to an unknown one, empty for none."""
+    close = difflib.get_close_matches(str(name), list(known), n=1)
+    return f'did you mean {prefix}{close[0]}?' if close else ''
+
+
+def choices_hint(name: object, choices: Iterable[str]) -> str:
+    """Return a hint for an unknown name: the closest choice if one is alike, and all choices."""
+    choices = list(choices)
+    meant, every = did_you_mean(name, choices), f'choose from {", ".join(choices)}'
+    return f'{meant} Else {every}' if meant else every
+
+
 def require_choice(name: str, value: str, choices: Sequence[str]) -> None:
     """Raise ParameterError that names the choices when `value` is none of them."""
     if value not in choices:
-        raise ParameterError(
-            f'unknown {name} {value!r}: choose from {", ".join(choices)}', key=name
-        )
+        raise ParameterError(f'unknown {name} {value!r}: {choices_hint(value, choices)}', key=name)
 
 
 MOST_SIGNAL = 1e150

@@ -8,7 +8,6 @@ a mapping of options.
 """
 
 import dataclasses
-import difflib
 import typing
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -16,7 +15,7 @@ from functools import cache
 from types import MappingProxyType
 from typing import Any, ClassVar, TypeVar
 
-from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.errors import ParameterError, did_you_mean
 from ddct_plant.base.option import REQUIRED, Option, Options
 
 ASSUMED = 'assumed'
@@ -145,5 +144,4 @@ def require_known(
 def close_name(name: object, known: Iterable[str], prefix: str = '') -> str:
     """Return a hint for an unknown name: the closest known one, or else all known names."""
     known = list(known)
-    close = difflib.get_close_matches(str(name), known, n=1)
-    return f'did you mean {prefix}{close[0]}?' if close else f'known: {", ".join(known)}'
+    return did_you_mean(name, known, prefix) or f'known: {", ".join(known)}'

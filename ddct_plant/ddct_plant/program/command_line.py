@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, NoReturn, Protocol
 
 from ddct_plant.base.errors import DdctError, printable
+from ddct_plant.base.options import close_name
 from ddct_plant.files.json_records import write_json
 from ddct_plant.files.output_file import STDOUT
 from ddct_plant.program.help_text import HelpFormatter
@@ -116,6 +117,19 @@ def split_ros_arguments(arguments: Sequence[str]) -> tuple[list[str], list[str]]
     return own, for_ros
 
 
+def number_in(unit: str = '') -> Callable[[str], float]:
+    """Return the `type` of an option that takes a number in a unit, empty for none or several."""
+    alone = f'a number in {unit}, without the unit' if unit else 'a number alone, without a unit'
+
+    def number(text: str) -> float:
+        try:
+            return float(text)
+        except ValueError:
+            raise argparse.ArgumentTypeError(f'{text!r} is no number: give {alone}') from None
+
+    return number
+
+
 class ProgramParser(argparse.ArgumentParser):
     """Argument parser with --version, whose help fits the terminal and whose errors are a line."""
 
@@ -123,6 +137,7 @@ class ProgramParser(argparse.ArgumentParser):
         """Accept the options of ArgumentParser."""
         options.setdefault('formatter_class', HelpFormatter)
         super().__init__(**options)
+        self.register('type', float, number_in())
         self.add_argument(
             '--version', action='version', version=package_version(), help='print it, and end'
         )
@@ -176,7 +191,12 @@ def run_subcommands(
                 command.load().add_parser(subparsers)
             else:
                 subparsers.add_parser(name, help=command.help)
-        options = parser.parse_args(argv)
+        if argv and not argv[0].startswith('-') and argv[0] not in commands:
+            what = f'unknown {metavar.lower()} {argv[0]}'
+            parser.error(f'{what}: {close_name(argv[0], commands)}')
+        options, unknown = parser.parse_known_args(argv)
+        if unknown:
+            subparsers.choices[argv[0]].error(f'unrecognized arguments: {" ".join(unknown)}')
         return options.run(options)
 
     return run_program(parser.prog, chosen, argv)

@@ -8,6 +8,7 @@ from collections.abc import Collection, Iterable, Iterator
 from dataclasses import fields
 from functools import cache
 
+from ddct_plant.base.errors import did_you_mean
 from ddct_plant.base.options import Option, OptionGroup, Options, group_of, options_of
 from ddct_plant.scenario.choices.settings import SETTINGS
 from ddct_plant.scenario.scenario import Scenario
@@ -45,8 +46,8 @@ def scenario_key_hint(name: str, section: Collection[str], prefix: str) -> str:
     """Return a hint for an unknown key: a key of its section, an option of the run, or any key."""
     if f'{prefix}{name}' in _GONE:
         return _GONE[f'{prefix}{name}']
-    if close := difflib.get_close_matches(name, section, n=1):
-        return f'did you mean {prefix}{close[0]}?'
+    if meant := did_you_mean(name, section, prefix):
+        return meant
     known = {**scenario_options(), **SETTINGS}
     for meant in _meant(f'{prefix}{name}', known):
         if meant in SETTINGS:

@@ -51,7 +51,7 @@ class KnownSettings(OptionGroup):
         super().__post_init__()
         self._require_reference()
         self._require_shift()
-        require_able(self.scenario)
+        self._require_able()
 
     @property
     def detailed(self) -> bool:
@@ -103,6 +103,10 @@ class KnownSettings(OptionGroup):
     def kind(self, *, two_input: bool = False) -> RunKind:
         """Return the kind of the run, which decides its topics; `two_input` if it commands C_m."""
         return RunKind(self.lockstep, two_input, self.clutch, self.sensed, self.shift)
+
+    def _require_able(self) -> None:
+        """Refuse a drive that asks for more than the car has."""
+        require_able(self.scenario)
 
     def _require_shift(self) -> None:
         """Refuse a shift that cannot be, and a handover in another run."""
@@ -157,6 +161,14 @@ class KnownSettings(OptionGroup):
                 'engine_speed_reference.time_s and engine_speed_reference.speed_rad_s',
                 key='reference.shape',
             )
+
+
+@dataclass(frozen=True)
+class LinearSettings(KnownSettings):
+    """Settings of a linear analysis, which limits no torque: any drive goes with any car."""
+
+    def _require_able(self) -> None:
+        """Accept any drive."""
 
 
 @dataclass(frozen=True)

@@ -43,7 +43,10 @@ class Tyre(OptionGroup, prefix='tyre.'):
         ({'layers': 0}, 'tyre.layers is 0: it must be at least 1'),
         ({'layers': 1.5}, 'tyre.layers is 1.5: give a whole number'),
         ({'spare': 1}, 'tyre.spare is 1: give true or false'),
-        ({'make': 'nowhere'}, "unknown tyre.make 'nowhere': choose from here, there"),
+        (
+            {'make': 'nowhere'},
+            "unknown tyre.make 'nowhere': did you mean here? Else choose from here, there",
+        ),
         ({'make': 5}, 'tyre.make is 5: give text'),
         ({'wear_mm': 1.0}, 'tyre.wear_mm is 1.0: give a list, [...]'),
         ({'wear_mm': (1.0, -2.0)}, 'tyre.wear_mm[1] is -2 mm: it must be at least 0'),

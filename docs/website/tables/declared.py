@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from functools import cache
 
 from ddct_controllers.design.analysis.loops import continuous_loop, sampled_loop
-from ddct_controllers.design.analysis.worst_corner import PlantCorners
 from ddct_controllers.design.h_infinity.recipes import PRINTED_WEIGHTS, THESIS_SPECIFICATIONS
 from ddct_controllers.design.h_infinity.record import (
     design_record,
@@ -40,9 +39,8 @@ from website.tables.tuning_tables import tuning_tables
 
 def h_infinity_tables() -> Mapping[str, TextTable]:
     """Return our designs together with the printed controllers."""
-    corners = PlantCorners()
     records = [
-        design_record(name, recipe, THESIS_SPECIFICATIONS, synthesised_design(name), corners)
+        design_record(name, recipe, THESIS_SPECIFICATIONS, synthesised_design(name))
         for name, recipe in SYNTHESISED.items()
     ]
     printed = {

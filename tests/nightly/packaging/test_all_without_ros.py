@@ -21,7 +21,7 @@ for name, main, arguments in (
     ('compare', compare.main, '--controllers pi --headless --duration 1 --out runs'),
     ('score', score.main, 'runs --json scores.json'),
     ('identify', identify.main, ''),
-    ('design', design_program.main, 'margins --controller pi'),
+    ('design', design_program.main, 'margins --controllers pi'),
     ('thesis', thesis.main, 'numbers --help'),
 ):
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):

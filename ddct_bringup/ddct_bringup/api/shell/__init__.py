@@ -48,7 +48,6 @@ if TYPE_CHECKING:
     from ddct_bringup.reproduction.studies import command as studies_command
     from ddct_bringup.run.execution import print_kept_logs, run_with_progress
     from ddct_bringup.run.options import (
-        controllers_of,
         metrics_of,
         print_choices,
     )
@@ -71,7 +70,12 @@ if TYPE_CHECKING:
     from ddct_bringup.tuning.report.document import tuning_document
     from ddct_bringup.tuning.study import require_optuna
     from ddct_bringup.verdict.limits import Limits, load_limits
-    from ddct_controllers.registry import controller_label, controller_names, working_controllers
+    from ddct_controllers.registry import (
+        controller_label,
+        controller_names,
+        controllers_of,
+        working_controllers,
+    )
     from ddct_controllers.workflows.evidence import frequency_evidence
     from ddct_plant.files.json_records import write_json
     from ddct_plant.files.yaml_text import dump_yaml

@@ -10,7 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ddct_controllers.design.analysis.loop_curve import LoopCurve
-from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop, sampled_loop
+from ddct_controllers.design.analysis.loops import (
+    IDENTIFIED_DRIVELINE,
+    ContinuousLoop,
+    continuous_loop,
+    sampled_loop,
+)
 from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
 from ddct_controllers.design.drawing.chart_style import chart_style, new_chart, save_figure
 from ddct_controllers.design.drawing.line_styles import (
@@ -38,6 +43,8 @@ from ddct_controllers.design.drawing.nichols import (
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_controllers.from_file.designed import DesignedController
 from ddct_plant.linear.lti import StateSpace
+from ddct_plant.models.actuator import PRINTED_ACTUATOR, ActuatorParameters
+from ddct_plant.models.parameters import DrivelineParameters
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -127,7 +134,11 @@ def decibel(values: np.ndarray) -> np.ndarray:
 
 
 def write_design_charts(
-    folder: Path, designed: DesignedController, specifications: TimeSpecifications
+    folder: Path,
+    designed: DesignedController,
+    specifications: TimeSpecifications,
+    parameters: DrivelineParameters = IDENTIFIED_DRIVELINE,
+    actuator: ActuatorParameters = PRINTED_ACTUATOR,
 ) -> None:
     """
     Write NAME_nyquist, NAME_nichols and NAME_step as .png, .svg and .csv, or raise DdctError.
@@ -136,8 +147,10 @@ def write_design_charts(
     judges, and as run: sampled, with hold and delay.
     """
     loops: dict[str, ContinuousLoop | StateSpace] = {
-        'continuous, no delay': continuous_loop(designed.transfer_function),
-        'as run: sampled, hold and delay': sampled_loop(designed.sampled()),
+        'continuous, no delay': continuous_loop(designed.transfer_function, parameters),
+        'as run: sampled, hold and delay': sampled_loop(
+            designed.sampled(), parameters, actuator=actuator
+        ),
     }
     curves = {label: LoopCurve(loop).values for label, loop in loops.items()}
     charted = {label: nichols_curve(values) for label, values in curves.items()}

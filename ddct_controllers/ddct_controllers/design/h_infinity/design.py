@@ -54,6 +54,10 @@ class HinfDesign:
     """Controller after cleaning, in the same variable as `raw`."""
     sampled: StateSpace
     """Controller G_c(z) from slip error in rpm to torque in N m, as it runs."""
+    parameters: DrivelineParameters
+    """Driveline that it is designed for."""
+    actuator: ActuatorParameters
+    """Actuator with which it is verified, and for which a sampled design is made."""
 
 
 def design_h_infinity(
@@ -83,9 +87,10 @@ def design_h_infinity(
         sampled = from_w_plane(realised)
     else:
         sampled = discretise_zoh(realised, PERIOD_S)
-        _require_stable('without hold and delay', continuous_loop(cleaned, parameters))
-    _require_stable('with hold and delay', sampled_loop(sampled, parameters, actuator=actuator))
-    return HinfDesign(weights, synthesis, raw, steps, cleaned, sampled)
+        _require_stable(weights, 'without hold and delay', continuous_loop(cleaned, parameters))
+    as_run = sampled_loop(sampled, parameters, actuator=actuator)
+    _require_stable(weights, 'with hold and delay', as_run)
+    return HinfDesign(weights, synthesis, raw, steps, cleaned, sampled, parameters, actuator)
 
 
 def generalised_plant(
@@ -126,9 +131,10 @@ def _require_attainable(
         )
 
 
-def _require_stable(which: str, loop: ContinuousLoop | StateSpace) -> None:
+def _require_stable(weights: HinfWeights, which: str, loop: ContinuousLoop | StateSpace) -> None:
     if not closed_loop_stable(loop):
+        other = '' if weights.sampled else ', or take --weights sampled'
         raise DdctError(
-            f'synthesis: the cleaned controller makes the loop {which} unstable: allow a longer '
-            'rise time, or use the weights that have hold and delay in the plant (sampled)'
+            f'the cleaned controller makes the loop {which} unstable: allow a longer rise '
+            f'time{other}'
         )

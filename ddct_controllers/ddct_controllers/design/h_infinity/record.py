@@ -3,6 +3,7 @@
 """Results of `design h-infinity` as a record for JSON and tables."""
 
 from ddct_controllers.design.analysis.loops import (
+    IDENTIFIED_DRIVELINE,
     ContinuousLoop,
     continuous_loop,
     plant_in_rpm,
@@ -13,7 +14,7 @@ from ddct_controllers.design.analysis.step_response import rise_time_and_oversho
 from ddct_controllers.design.analysis.worst_corner import (
     PARAMETER_SPREAD,
     WEAR_GAINS,
-    PlantCorners,
+    plant_corners,
     worst_corner,
 )
 from ddct_controllers.design.h_infinity.design import HinfDesign
@@ -43,6 +44,8 @@ from ddct_controllers.design.h_infinity.uncertainty import (
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_controllers.design.state_space import factored_form
 from ddct_plant.linear.lti import StateSpace
+from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.scenario.choices.scenarios import DEFAULT_SCENARIO
 
 _STEP_RISE_TIMES = 20.0
 """Length of the step responses in specified rise times."""
@@ -53,14 +56,19 @@ def design_record(
     recipe: str,
     specifications: TimeSpecifications,
     design: HinfDesign,
-    corners: PlantCorners,
+    scenario: str = DEFAULT_SCENARIO,
 ) -> HinfRecord:
-    """Return a design and its verified quantities, at `corners` over wear and parameters too."""
+    """
+    Return a design and its verified quantities, over wear and the corners of its driveline too.
+
+    `scenario` is the name of that whose driveline and actuator it is designed for.
+    """
     found = design.synthesis
+    corners = plant_corners(design.parameters, design.actuator)
     worst = worst_corner(design.sampled, corners)
     return HinfRecord(
         name=name,
-        provenance=provenance(recipe, specifications, design),
+        provenance=provenance(recipe, specifications, design, scenario),
         synthesis=SynthesisEntry(
             method=found.method,
             optimum=found.optimum,
@@ -105,13 +113,14 @@ def shortfalls(record: HinfRecord) -> list[str]:
 
 
 def provenance(
-    recipe: str, specifications: TimeSpecifications, design: HinfDesign
+    recipe: str, specifications: TimeSpecifications, design: HinfDesign, scenario: str
 ) -> HinfProvenance:
     """Return the provenance of a design for the controller's file."""
     weights = design.weights
     w_s, w_t, effort = weights.sensitivity, weights.complementary, weights.effort
     return HinfProvenance(
         method=f'h-infinity, {design.synthesis.method}',
+        scenario=scenario,
         specifications=HinfSpecifications(
             rise_time_s=specifications.rise_time_s,
             overshoot=specifications.overshoot,
@@ -137,8 +146,14 @@ def provenance(
         loops=LoopsEntry(
             continuous_loop=None
             if weights.sampled
-            else loop_record(continuous_loop(design.cleaned), weights, specifications),
-            sampled_loop=loop_record(sampled_loop(design.sampled), weights, specifications),
+            else loop_record(
+                continuous_loop(design.cleaned, design.parameters), weights, specifications
+            ),
+            sampled_loop=loop_record(
+                sampled_loop(design.sampled, design.parameters, actuator=design.actuator),
+                weights,
+                specifications,
+            ),
         ),
     )
 
@@ -164,9 +179,11 @@ def loop_record(
     )
 
 
-def uncertainty_record() -> UncertaintyRecord:
+def uncertainty_record(
+    parameters: DrivelineParameters = IDENTIFIED_DRIVELINE,
+) -> UncertaintyRecord:
     """Return the fitted and the printed W_u, and the shortfall of the printed one."""
-    error = relative_error(plant_in_rpm(), wear_family(), OMEGA)
+    error = relative_error(plant_in_rpm(parameters), wear_family(parameters), OMEGA)
     largest = float(error.max())
     printed = abs(PRINTED_W_U.frequency_response(OMEGA))
     return UncertaintyRecord(

@@ -81,6 +81,8 @@ class HinfProvenance:
     """Provenance of a design, as it stands in the controller's file."""
 
     method: str
+    scenario: str
+    """Scenario of the driveline and the actuator, and its values that are changed."""
     specifications: HinfSpecifications
     weights: WeightEntry
     gamma: float

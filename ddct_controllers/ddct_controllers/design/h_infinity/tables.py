@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 
 from ddct_controllers.design.analysis.loop_quantities import DESIGN_QUANTITY_OF
 from ddct_controllers.design.h_infinity.record_types import (
+    HinfProvenance,
     HinfRecord,
-    HinfSpecifications,
     LoopEntry,
     LoopsEntry,
     UncertaintyRecord,
@@ -47,7 +47,7 @@ def design_tables(
 ) -> dict[str, TextTable]:
     """Return the tables of designs for one specification, by their names on the page."""
     tables = {
-        'specifications': _specification_table(records[0].provenance.specifications),
+        'specifications': _specification_table(records[0].provenance),
         'weights': _weight_table(records),
         'uncertainty': _uncertainty_table(uncertainty),
         'synthesis': _synthesis_table(records),
@@ -98,9 +98,10 @@ def loop_table(loops: Mapping[str, LoopsEntry]) -> TextTable:
     )
 
 
-def _specification_table(specified: HinfSpecifications) -> TextTable:
+def _specification_table(given: HinfProvenance) -> TextTable:
+    specified = given.specifications
     return TextTable(
-        'Specifications, translated by the second-order prototype',
+        f'Specifications, translated by the second-order prototype; scenario {given.scenario}',
         ('t_r s', 's^ %', 'zeta', 'S_p', 'T_p', 'w_n rad/s'),
         [
             (
@@ -172,8 +173,10 @@ def _synthesis_table(records: Sequence[HinfRecord]) -> TextTable:
 
 
 def _controller_table(records: Sequence[HinfRecord]) -> TextTable:
+    sampled = any(record.provenance.weights.hold_and_delay_in_plant for record in records)
+    rule = '; the sampled design is discretised by the bilinear transform' if sampled else ''
     return TextTable(
-        'Controllers in N m/rpm; the sampled design is discretised by the bilinear transform',
+        f'Controllers in N m/rpm{rule}',
         ('controller', 'form', 'gain', 'numerator', 'denominator'),
         [
             (

@@ -22,6 +22,7 @@ from ddct_controllers.design.analysis.loops import (
 )
 from ddct_controllers.design.h_infinity.weights import ComplementaryWeight, SensitivityWeight
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.models.parameters import DrivelineParameters
 
 PRINTED_W_U = FactoredTransferFunction(0.2987, (3913.0 / 0.2987,), (13030.0,))
 """
@@ -46,9 +47,11 @@ def shortfall_from_rad_s(weight: FactoredTransferFunction, error: float) -> floa
     return float(scipy.optimize.brentq(excess, OMEGA[0], OMEGA[-1]))
 
 
-def wear_family() -> tuple[FactoredTransferFunction, ...]:
+def wear_family(
+    parameters: DrivelineParameters = IDENTIFIED_DRIVELINE,
+) -> tuple[FactoredTransferFunction, ...]:
     """Return G_a P_2 30/pi at both ends of the range of K_usura."""
-    return tuple(plant_in_rpm(IDENTIFIED_DRIVELINE, gain) for gain in WEAR_RANGE)
+    return tuple(plant_in_rpm(parameters, gain) for gain in WEAR_RANGE)
 
 
 def relative_error(

@@ -25,6 +25,7 @@ from ddct_controllers.design.state_space import frequency_response, series
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 from ddct_plant.linear.sampling import discretise_zoh
+from ddct_plant.models.actuator import PRINTED_ACTUATOR, ActuatorParameters
 from ddct_plant.models.parameters import DrivelineParameters
 
 _LEAD_POLE_RATIO = 10.0
@@ -49,15 +50,19 @@ class Candidates:
     """Candidates for one set of specifications."""
 
     def __init__(
-        self, specifications: TimeSpecifications, count: int, parameters: DrivelineParameters
+        self,
+        specifications: TimeSpecifications,
+        count: int,
+        parameters: DrivelineParameters,
+        actuator: ActuatorParameters = PRINTED_ACTUATOR,
     ) -> None:
-        """Take the specifications, `count` integrators and the driveline."""
+        """Take the specifications, `count` integrators, the driveline and the actuator."""
         self._specifications = specifications
         self._count = count
         self._parameters = parameters
         self._plant = plant_in_rpm(parameters)
         self._sign = float(stabilising_sign(self._plant, count))
-        self._sampled_plant = sampled_plant(parameters)
+        self._sampled_plant = sampled_plant(parameters, actuator=actuator)
         self._plant_response = frequency_response(self._sampled_plant, _OMEGA)
         first_rad_s = _FIRST_CROSSOVER * specifications.crossover_rad_s
         self._first = int(np.searchsorted(_CROSSOVERS_RAD_S, first_rad_s))

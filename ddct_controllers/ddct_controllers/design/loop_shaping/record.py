@@ -63,23 +63,24 @@ def thesis_record() -> ThesisRecord:
     )
 
 
-def design_record(name: str, design: LoopShapingDesign) -> LoopShapingRecord:
-    """Return a design and its verified quantities."""
+def design_record(name: str, design: LoopShapingDesign, scenario: str) -> LoopShapingRecord:
+    """Return a design and its verified quantities; `scenario` has the driveline's name."""
     found = design.verification
     return LoopShapingRecord(
         name=name,
         controller=design.controller,
-        provenance=provenance(design),
+        provenance=provenance(design, scenario),
         contours=list(found.contours),
     )
 
 
-def provenance(design: LoopShapingDesign) -> LoopShapingProvenance:
+def provenance(design: LoopShapingDesign, scenario: str) -> LoopShapingProvenance:
     """Return the provenance of a design for the controller's file."""
     found = design.verification
     specifications = found.specifications
     return LoopShapingProvenance(
         method='loop-shaping',
+        scenario=scenario,
         structure=design.structure,
         integrators=design.integrators,
         specifications=LoopShapingSpecifications(

@@ -89,6 +89,8 @@ class LoopShapingProvenance:
     """Provenance of a design, as it stands in the controller's file."""
 
     method: str
+    scenario: str
+    """Scenario of the driveline and the actuator, and its values that are changed."""
     structure: str
     integrators: int
     """Number of integrators."""

@@ -14,6 +14,7 @@ from ddct_controllers.design.loop_shaping.specifications import (
 from ddct_controllers.design.loop_shaping.verification import LoopVerification, verify
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.linear.lti import FactoredTransferFunction
+from ddct_plant.models.actuator import PRINTED_ACTUATOR, ActuatorParameters
 from ddct_plant.models.parameters import DrivelineParameters
 
 STRUCTURES = ('networks', 'placement')
@@ -41,6 +42,7 @@ def design_loop_shaping(
     integrator_count: int,
     parameters: DrivelineParameters,
     structures: tuple[str, ...] = STRUCTURES,
+    actuator: ActuatorParameters = PRINTED_ACTUATOR,
 ) -> LoopShapingDesign:
     """
     Return the slowest controller found that meets the specifications.
@@ -50,12 +52,12 @@ def design_loop_shaping(
     ParameterError with the specifications that can be reached.
     """
     require_reachable(specifications)
-    candidates = Candidates(specifications, integrator_count, parameters)
+    candidates = Candidates(specifications, integrator_count, parameters, actuator)
     rejections: tuple[str, ...] = ()
     for within_contours in (True, False):
         for structure in structures:
             for controller in candidates.fast_enough(structure, within_contours):
-                found = verify(controller, specifications, parameters)
+                found = verify(controller, specifications, parameters, actuator)
                 if not found.rejections and found.respects_contours >= within_contours:
                     return LoopShapingDesign(structure, integrator_count, controller, found)
                 rejections = found.rejections

@@ -74,7 +74,8 @@ def design_tables(record: LoopShapingRecord) -> tuple[TextTable, TextTable]:
     overshoot = None if found.overshoot is None else 100.0 * found.overshoot
     peaks = {contour.name: contour for contour in record.contours}
     quantities = TextTable(
-        f'{record.name}: {provenance.structure}, {provenance.integrators} integrator(s)',
+        f'{record.name}: {provenance.structure}, {provenance.integrators} integrator(s); '
+        f'scenario {provenance.scenario}',
         ('quantity', 'specified', 'sampled loop', 'unit'),
         [
             _row('rise time', specified.rise_time_s, found.rise_time_s, 's'),

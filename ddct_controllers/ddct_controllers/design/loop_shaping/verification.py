@@ -19,6 +19,7 @@ from ddct_controllers.design.loop_shaping.specifications import TimeSpecificatio
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.linear.sampling import discretise_zoh
+from ddct_plant.models.actuator import PRINTED_ACTUATOR, ActuatorParameters
 from ddct_plant.models.parameters import DrivelineParameters
 
 LARGEST_SENSITIVITY_PEAK = 2.0
@@ -97,13 +98,14 @@ def verify(
     controller: FactoredTransferFunction,
     specifications: TimeSpecifications,
     parameters: DrivelineParameters,
+    actuator: ActuatorParameters = PRINTED_ACTUATOR,
 ) -> LoopVerification:
     """Return the quantities of the sampled loop with the controller, discretised as in the run."""
     sampled = discretise_zoh(controller.to_state_space(), PERIOD_S)
-    loop = sampled_loop(sampled, parameters)
+    loop = sampled_loop(sampled, parameters, actuator=actuator)
     margins = loop_margins(loop)
     stable_when_worn = tuple(
-        closed_loop_stable(sampled_loop(sampled, parameters, wear_gain))
+        closed_loop_stable(sampled_loop(sampled, parameters, wear_gain, actuator))
         for wear_gain in WEAR_RANGE
     )
     if not margins.stable:

@@ -2,14 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """A car or a drive: a YAML file, a packaged name, or a section of a scenario file."""
 
-import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any, Self
 
-from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.errors import DdctError, ParameterError, choices_hint
 from ddct_plant.files.input_file import (
     SCHEMA_KEY,
     located,
@@ -88,10 +87,8 @@ class Text:
                 return user_text(self.path)
         names = packaged_names(self.noun)
         if self.name not in names:
-            close = difflib.get_close_matches(self.name, names, n=1)
-            meant = f'did you mean {close[0]}? Else ' if close else ''
             raise ParameterError(
-                f'unknown {self.noun} {self.name!r}: {meant}choose from {", ".join(names)}, or '
+                f'unknown {self.noun} {self.name!r}: {choices_hint(self.name, names)}, or '
                 'give the path of a YAML file',
                 key=self.name,
             )

@@ -115,7 +115,7 @@ def _first_reached(plant: GeneralisedPlant) -> tuple[float, Synthesis]:
             return level, found
         level *= _FACTOR
     raise DdctError(
-        f'synthesis: no level up to {_HIGHEST:g} gave a controller whose closed loop verifies: '
+        f'no level up to {_HIGHEST:g} gave a controller whose closed loop verifies: '
         'move plant poles and zeros off the imaginary axis, or scale the weights to about 1 near '
         'the crossover',
         key='weights',
