@@ -140,4 +140,4 @@ lock: $(VENV_MADE)
 	    $(COMPILE) --group $$group -c locks/workspace.txt -o locks/$$group.txt; done
 
 clean:
-	rm -rf .venv build install log .fuzz_cache .mypy_cache .pytest_cache .ruff_cache
+	rm -rf .venv build install log site dist .fuzz_cache .mypy_cache .pytest_cache .ruff_cache
