@@ -3,13 +3,18 @@
 """Nodes that import none of this project's code replace its nodes and give the same trajectory."""
 
 import re
+import runpy
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+import rclpy
 from support.documented import ROOT, blocks
+from support.in_process_graph import GraphOf
+from support.runs import plan
 from waiting import WITHIN_S
 
 from ddct_bringup.bag.reader import read_bag
@@ -20,7 +25,7 @@ from ddct_plant.signals.topics import TORQUE_PARTS, all_signals
 
 PAGE = 'docs/develop/graph.md'
 EXAMPLES = sorted((ROOT / 'docs' / 'examples').glob('own_*.py'))
-MOST_LINES = 40
+MOST_LINES = 50
 """Largest number of lines of code of an example, as on the page; comments are none."""
 _KILLED_AT_EXIT = "trap 'kill -KILL $(jobs -p) 2>/dev/null || true; wait' EXIT"
 """An example may hang as it leaves the graph: no supervisor ends it, as it ends a node of ours."""
@@ -34,14 +39,15 @@ def test_an_example_is_short_and_imports_nothing_of_ours(file: Path) -> None:
     assert len(code) <= MOST_LINES
 
 
-def test_the_page_shows_the_controller_as_it_runs() -> None:
-    (shown,) = [block for block in blocks() if (block.page, block.language) == (PAGE, 'python')]
-    assert shown.text in (ROOT / 'docs/examples/own_controller.py').read_text(encoding='utf-8')
+def test_the_page_shows_the_examples_as_they_run() -> None:
+    shown = [block for block in blocks() if (block.page, block.language) == (PAGE, 'python')]
+    for block, name in zip(shown, ('own_controller.py', 'own_actuator.py'), strict=True):
+        assert block.text in (ROOT / 'docs' / 'examples' / name).read_text(encoding='utf-8')
 
 
 def test_own_nodes_give_the_trajectory_of_ours_by_the_lines_of_the_page(tmp_path: Path) -> None:
     shown = [block.text for block in blocks() if block.page == PAGE]
-    (commands,) = [text for text in shown if all(file.name in text for file in EXAMPLES)]
+    (commands,) = [text for text in shown if 'own_controller.py' in text and 'own_engine' in text]
     for name, target in (('docs', ROOT / 'docs'), ('install', ROOT / 'install')):
         (tmp_path / name).symlink_to(target)
     (tmp_path / '.venv').symlink_to(sys.prefix)
@@ -66,3 +72,28 @@ def test_own_nodes_give_the_trajectory_of_ours_by_the_lines_of_the_page(tmp_path
             assert found is None, 'the node leaves the parts out'
         elif signal.name != 'status':
             assert found is wanted is None or np.array_equal(found, wanted), signal.name
+
+
+@pytest.mark.parametrize('mode', ['lockstep', 'realtime'])
+def test_the_actuator_carries_the_run_and_in_real_time_opens_when_requests_stop(
+    graph_of: GraphOf, monkeypatch: pytest.MonkeyPatch, mode: str
+) -> None:
+    graph = graph_of(plan(mode=mode))
+    monkeypatch.setattr(rclpy.node, 'get_default_context', lambda: graph.context)
+    monkeypatch.setattr(rclpy, 'init', lambda: None)
+    monkeypatch.setattr(rclpy, 'spin', graph.add_other)
+    runpy.run_path(str(ROOT / 'docs' / 'examples' / 'own_actuator.py'))
+    graph.add_all(without=['actuator'])
+    recorder: Any = graph.nodes['recorder']
+    if mode == 'realtime':
+        graph.spin_until(lambda: recorder._bag.steps >= 60, 'a step with a torque')
+        graph.remove('controller')
+    graph.run()
+    torque = read_bag(graph.folder).trajectory.actuator_torque
+    if mode == 'realtime':
+        assert torque[60, 0] > 200.0
+        assert torque[-1, -1] == 0.0
+        assert np.diff(torque[:, 0]).min() == pytest.approx(-10.0)
+    else:
+        assert torque[1:, 0] == pytest.approx(torque[:-1, -1]), 'continuous'
+        assert torque[-1, -1] > 200.0

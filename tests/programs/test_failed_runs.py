@@ -185,7 +185,7 @@ def test_where_no_run_is_valid_an_old_result_stays(
     partial = out.with_name('runs.partial')
     *_, last = capfd.readouterr().err.splitlines()
     assert last == (
-        f'ddct compare: no run is valid (ls8): {out} is untouched, '
+        f'ddct compare: no run is valid (ls8): nothing was written to {out}, '
         f'what was recorded is in {partial}'
     )
     assert [run['valid'] for run in _scores(partial)] == [False]
@@ -203,5 +203,6 @@ def test_an_interrupted_compare_keeps_the_old_result_and_names_what_it_recorded(
     partial = tmp_path / 'runs.partial'
     assert (partial / 'pi' / 'pi_0.mcap').is_file(), 'it was under way'
     assert capfd.readouterr().err.splitlines()[-1] == (
-        f'ddct compare: interrupted: {out} is untouched, what was recorded is in {partial}'
+        f'ddct compare: interrupted: nothing was written to {out}, '
+        f'what was recorded is in {partial}'
     )

@@ -7,10 +7,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import close_name
 from ddct_plant.program.command_line import ROS_ARGUMENTS
+from ddct_plant.signals.topics import TOPICS
 
 _NAMESPACE = '__ns'
 _REMAP = ('-r', '--remap')
+_OF_ROS = ('/parameter_events', '/rosout')
+"""Topics that each node has besides those of the graph."""
 _FULL_NAME = re.compile(r'(/[A-Za-z](_?[A-Za-z0-9])*_?)+')
 _FORM = (
     f'give {ROS_ARGUMENTS} -r __ns:=/NAMESPACE, or -r /TOPIC:=/OTHER with full names; other '
@@ -50,6 +54,14 @@ class GraphNames:
                 namespace = new
             else:
                 topics.append((old, new))
+        names = [topic.name for topic in TOPICS]
+        known = [each if each[0] == '/' else f'{namespace}/{each}' for each in names]
+        for old, _ in topics:
+            if old not in (*known, *_OF_ROS):
+                raise ParameterError(
+                    f'{ROS_ARGUMENTS} -r: no topic {old}: {close_name(old, known)}',
+                    key=ROS_ARGUMENTS,
+                )
         return cls(namespace, tuple(topics))
 
     def resolved(self, topic: str) -> str:

@@ -40,7 +40,7 @@ examples:
   ddct compare --controllers all --wear-gain 0.7 --set load.slope_rad=0.05 --out runs/worn
   ddct compare --controllers pi --case vehicle.mass_kg=1700 --out runs/loaded     unknown mass
   ddct compare --controllers ls8 --mode realtime --live --out runs/live    seen in Foxglove
-  ddct compare --controllers pi --out runs/car --ros-args -r __ns:=/car -r /clock:=/car/clock
+  ddct compare --out runs/car --ros-args -r __ns:=/car -r /clock:=/car/clock
 
 Writes one bag per controller, DIR/scores.json, DIR/frequency.json with the margins of the
 linear ones, and DIR/report.html, a page that shows all of it. A run that fails does not stop the
@@ -140,6 +140,11 @@ def _parser() -> argparse.ArgumentParser:
     add_floors_option(parser)
     add_live_option(parser)
     add_run_options(parser)
+    parser.add_argument(
+        '--ros-args',
+        nargs=argparse.REMAINDER,
+        help='namespace and topics of the graph, as -r __ns:=/NAMESPACE -r /TOPIC:=/OTHER',
+    )
     return parser
 
 

@@ -66,7 +66,7 @@ class StagedFolder:
     @property
     def left(self) -> str:
         """Text for a message: the files that a run without commit has left, and their folder."""
-        return f'{self.final} is untouched, what was recorded is in {self.path}'
+        return f'nothing was written to {self.final}, what was recorded is in {self.path}'
 
     def commit(self) -> None:
         """Move the partial folder to its final name; raise DdctError when that fails."""

@@ -34,6 +34,8 @@ def test_remaps_name_the_graph_and_its_off_going_side():
         ['-r', 'clutch/torque:=/mine'],
         ['-r', '/clock:=clock'],
         ['-r', '/clock'],
+        ['-r', '/clocks:=/car/clock'],
+        ['-r', '/clutch/torque:=/other', '-r', '__ns:=/car'],
         ['-r', '/clock:=/car//clock'],
     ],
 )

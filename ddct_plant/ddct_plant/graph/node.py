@@ -92,6 +92,7 @@ class GraphNode(Node):
         """Future that is set at the end of the node, with the DdctError that ended it, or None."""
         # The same as done.done(), which takes long enough to matter for every message.
         self._over = False
+        self._start = ''
 
     @property
     def settings(self) -> RunSettings:
@@ -120,9 +121,14 @@ class GraphNode(Node):
         Output(self, topic).fill(stamp_of_step(0), pairs.items(), name=name).publish()
 
     def log_start(self, *inputs: Topic, then: str = '') -> None:
-        """Log once what this node is, the topics that it waits for as ROS has them, and `then`."""
+        """Keep for `announce` the topics that this node waits for as ROS has them, and `then`."""
         names = ', '.join(self.resolve_topic_name(topic.name) for topic in inputs)
-        self.get_logger().info(f'{ABOUT[self._kind]}: waits for {names}{then}')
+        self._start = f'{ABOUT[self._kind]}: waits for {names}{then}'
+
+    def announce(self) -> None:
+        """Log what this node is and waits for, if it has said so; its parameters are checked."""
+        if self._start:
+            self.get_logger().info(self._start)
 
     def _compare_settings(self, ours: Mapping[str, str], message: Any) -> None:
         """Raise DdctError where settings or other values of this node are not the recorder's."""

@@ -243,6 +243,7 @@ def declare(node: Node, name: str, described: Option, *, read_only: bool = True)
         usual = described.kind()
         declared = Parameter.Type.from_parameter_value([usual] if described.many else usual)
         overrides[name] = as_declared(overrides[name], declared)
+        described.checked(name, overrides[name].value)
     try:
         value = node.declare_parameter(name, start, descriptor).value
     except (InvalidParameterTypeException, InvalidParameterValueException) as error:

@@ -187,6 +187,7 @@ def _run(
         node = factory()
         built.append(node)
         require_declared(node)
+        node.announce()
         executor = make_executor()
         executor.add_node(node)
         # As well as what the parent of a forked node has frozen; the process ends with its node.

@@ -133,7 +133,9 @@ class DrivelineNode(GraphNode):
         for topic in acknowledged:
             self.subscribe_values(topic, partial(self._receive, topic))
         clock = self.resolve_topic_name(CLOCK.name)
-        self.log_start(*self._torques, *acknowledged, then=f' after each tick on {clock}')
+        longest = f'for at most {self.plan.answer_timeout_s:g} s (answer_timeout_s)'
+        then = f' after each tick on {clock}, {longest}'
+        self.log_start(*self._torques, *acknowledged, then=then)
 
     def _receive(self, topic: Topic, stamp: int, reply: Any) -> None:
         # With two publishers no clutch torque counts, so that the clutch opens.
