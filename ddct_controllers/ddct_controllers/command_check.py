@@ -19,7 +19,7 @@ def checked_command(controller: Controller, name: str, command: object, step: in
         return _plain(controller, name, command, step)
     except DdctError as error:
         place = place_of_method(controller, 'update')
-        raise DdctError(f'{error}, in {place}', key=error.key) from error
+        raise DdctError(f'{error}, in {place}', key=error.key) from None
 
 
 def _plain(controller: Controller, name: str, command: object, step: int) -> Command:

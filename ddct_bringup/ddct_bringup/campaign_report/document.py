@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The document of a campaign: how often, where, by what and how badly engagements fail."""
 
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -68,7 +69,8 @@ def campaign_document(summary: Summary, replay: str, page: PageParts | None = No
 
     `replay` is the command that makes the bag of the run INDEX.
     """
-    scenario = page.facts[SCENARIO] if page else ''
+    # Without the folder in which the result keeps files from outside of the specification's.
+    scenario = re.sub(r'\boutside_\d+/', '', page.facts[SCENARIO]) if page else ''
     return Document(
         'Campaign',
         f'Campaign, {scenario}' if scenario else 'Campaign',

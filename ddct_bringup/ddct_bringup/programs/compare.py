@@ -61,8 +61,6 @@ def _compare(argv: list[str]) -> int:
     if options.list:
         shell.print_choices()
         return 0
-    if options.out is None:
-        raise ParameterError('--out is missing: name the folder for the bags')
     shell.require_chart_library()
     require_place('--json', options.json)
     if options.layout == 'processes':
@@ -76,6 +74,8 @@ def _compare(argv: list[str]) -> int:
         shell.GraphNames.of(for_ros),
         **settings_given(options),
     )
+    if options.out is None:
+        raise ParameterError('--out is missing: name the folder for the bags')
     shell.print_adjusted(plans[0].settings.scenario)
     if options.live is not None and len(plans) > 1:
         raise ParameterError(f'--live shows one run, not {len(plans)}: name one controller')

@@ -3,13 +3,19 @@
 """Notes below a table of runs: why a run did not engage, limitations of its figures."""
 
 from ddct_bringup.scores.scored_run import ScoredRun
+from ddct_bringup.verdict.state import NOT_ENGAGED
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.signals.gain_changes import changes_note
+
+_GROWN_RPM = 3000.0
+"""Slip at the end in rpm with which no engagement begins: the controller has raised it."""
 
 
 def run_notes(run: ScoredRun) -> list[str]:
     """Return notes on one run: why it did not engage, or on its figures."""
     notes = [f'{run.state}: {run.why}'] if run.why else []
+    if run.state == NOT_ENGAGED and abs(run.metrics.get('slip_final_rpm') or 0.0) > _GROWN_RPM:
+        notes.append('the slip has grown: ddct check CONTROLLER finds a wrong sign or unit')
     if run.valid and run.fallbacks:
         notes.append(fallback_note(run))
     if run.gain_changes:
@@ -19,11 +25,15 @@ def run_notes(run: ScoredRun) -> list[str]:
 
 
 def slow_notes(run: ScoredRun) -> list[str]:
-    """Return a note if over 1 % of the updates of a real-time run are longer than the period."""
-    if run.facts is None or run.facts.mode != 'realtime':
+    """
+    Return a note if too many updates are longer than the period.
+
+    Of a real-time run that are over 1 %, of another one, which waits for them, over half.
+    """
+    median, most = (in_ms(run.metrics.get(f'update_time_{name}_us')) for name in ('median', 'p99'))
+    if run.facts is None or median is None or most is None:
         return []
-    median, most = (in_ms(run.metrics[f'update_time_{name}_us']) for name in ('median', 'p99'))
-    if median is None or most is None or most <= 1e3 * PERIOD_S:
+    if (most if run.facts.mode == 'realtime' else median) <= 1e3 * PERIOD_S:
         return []
     return [
         f'too slow for real time: its updates take {median:.1f} ms in the median, 1 % of them '

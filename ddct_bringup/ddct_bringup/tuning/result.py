@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Result of a tuning, `front.json`: the front, its held-out figures, sensitivity, convergence."""
 
+import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ from ddct_bringup.evaluation.share import Share
 from ddct_bringup.evaluation.summarise import gaps_between
 from ddct_bringup.tuning.front import best_of
 from ddct_bringup.tuning.specification.goals import RunColumns
+from ddct_bringup.tuning.specification.parameters import LOG
 from ddct_bringup.tuning.specification.spec import TuningSpec
 from ddct_bringup.tuning.study import TuningStudy
 from ddct_bringup.tuning.trial import FEASIBLE, Trial
@@ -22,6 +24,8 @@ from ddct_bringup.tuning.tuning import Tuning
 
 SCHEMA_VERSION = 3
 """Schema version of `front.json`."""
+_AT_END = 0.01
+"""Share of a range at each end in which a value counts as at the end."""
 
 
 @dataclass(frozen=True)
@@ -69,6 +73,15 @@ class ParameterRange:
     high: float
     scale: str
     """LINEAR or LOG, as in `Parameter`."""
+
+    def end_near(self, value: float) -> str:
+        """Return the end of the range within 1 % of which a value is, as text; '' for none."""
+        low, high, at = self.low, self.high, value
+        if self.scale == LOG:
+            low, high, at = (math.log(each) for each in (low, high, value))
+        if at - low <= _AT_END * (high - low):
+            return f'its lowest, {self.low:g}'
+        return f'its highest, {self.high:g}' if high - at <= _AT_END * (high - low) else ''
 
 
 @dataclass(frozen=True)

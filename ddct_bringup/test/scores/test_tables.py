@@ -71,6 +71,15 @@ def test_a_linear_clutch_has_the_columns_of_table_5_1_in_place_of_those_of_a_loc
     assert 't_a' not in printed([run(**STICKING)])
 
 
+def test_a_slip_that_has_grown_and_updates_longer_than_the_period_have_a_note():
+    late = {'update_time_median_us': 15000.0, 'update_time_p99_us': 20000.0}
+    text = unwrapped(printed([run(state='not_engaged', slip_final_rpm=24641.8, **late)]))
+    assert 'the slip has grown: ddct check CONTROLLER finds a wrong sign or unit' in text
+    assert 'its updates take 15.0 ms in the median' in text
+    one_late = {'update_time_median_us': 9.0, 'update_time_p99_us': 20000.0}
+    assert 'too slow' not in printed([run(**one_late)])
+
+
 def test_a_ratio_to_a_least_that_is_no_bound_has_a_star_with_its_reason():
     ratios = {**STICKING, 'peak_jerk_over_least': 1.26}
     text = printed([run('mpc4', least_is_bound=False, **ratios)])

@@ -23,7 +23,7 @@ from ddct_bringup.tuning import conduct, evaluation, study
 from ddct_bringup.tuning.conduct import carry_out_tuning
 from ddct_bringup.tuning.evaluation import TrialRuns
 from ddct_bringup.tuning.report.folder import write_tuning
-from ddct_bringup.tuning.result import TuningResult
+from ddct_bringup.tuning.result import ParameterRange, TuningResult
 from ddct_bringup.tuning.specification.spec import TuningSpec
 from ddct_bringup.tuning.study import JOURNAL, TuningStudy, read_trials
 from ddct_bringup.tuning.tables import RUNS, TRIALS, rows_by_trial
@@ -245,6 +245,12 @@ def test_the_result_shows_development_beside_held_out(finished: Path) -> None:
     assert result['before']['development']['engaged']['of'] == result['cases']
     assert sum(result['states'].values()) == result['trials'] == 20
     assert result['runs'] < result['all_runs']
+
+
+def test_a_value_at_an_end_of_its_range_is_named() -> None:
+    assert ParameterRange(0.0, 0.3, 'linear').end_near(0.299) == 'its highest, 0.3'
+    assert ParameterRange(0.01, 1.0, 'log').end_near(0.0102) == 'its lowest, 0.01'
+    assert ParameterRange(0.01, 1.0, 'log').end_near(0.02) == ''
 
 
 def test_constraints_that_no_trial_keeps_end_with_a_line(tmp_path: Path) -> None:

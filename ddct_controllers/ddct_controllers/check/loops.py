@@ -49,9 +49,9 @@ def update_time(subject: Subject) -> str:
     )
     if slowest >= PERIOD_S or subject.closed_loop.too_slow:
         raise CheckFailedError(
-            f'{found}: it must be done within its period of {1e3 * PERIOD_S:g} ms; what can be '
-            'computed before belongs where the controller is made, not in '
-            f'{place_of_method(subject.sample, "update")}'
+            f'{found}: it must be done within its period of {1e3 * PERIOD_S:g} ms; compute what '
+            'does not change in __init__, not in update '
+            f'({place_of_method(subject.sample, "update")})'
         )
     return found
 

@@ -75,8 +75,8 @@ def _check(argv: list[str]) -> int:
     report = CheckReport(options.controller, outcomes)
     show_and_write(options.json, report, lambda: _print(outcomes))
     failed = [each.name for each in outcomes if each.state == FAIL]
-    if failed:
-        complain(PROGRAM, f'{options.controller} fails: {", ".join(failed)}')
+    found = f'fails: {", ".join(failed)}' if failed else 'passes'
+    complain(PROGRAM, f'{options.controller} {found}')
     return 1 if failed else 0
 
 

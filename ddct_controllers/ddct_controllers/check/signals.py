@@ -72,7 +72,8 @@ def saturation(subject: Subject) -> str:
     most = float(np.abs(change).max())
     return (
         f'{LASTING_RAD_S:g} rad/s more slip over 0.5 s asks up to {most:.4g} N m more; 0.5 s '
-        f'later {np.abs(change[-1]).max():.4g} N m of it are left'
+        f'later {np.abs(change[-1]).max():.4g} N m of it are left (no limit: much of it is an '
+        'integral that grew, which limits in update prevent)'
     )
 
 

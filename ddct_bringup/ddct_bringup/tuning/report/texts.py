@@ -42,6 +42,9 @@ def notes_of(result: TuningResult) -> Iterator[str]:
         yield 'the best trial keeps the constraints on development cases, not on held-out ones'
     if any(each.differs for each in result.gaps):
         yield 'the best trial is worse on held-out cases, beyond chance'
+    for name, value in best.parameters.items():
+        if end := result.parameters[name].end_near(value):
+            yield f'{name} of the best trial, {value:.4g}, is at {end}: widen its range'
     if result.before is None:
         yield 'the values from before are outside of the ranges, and were not tried'
     if result.trials < FEWEST:
