@@ -282,3 +282,10 @@ def test_options_of_a_controller_may_be_set_for_its_check(
     assert program.main(['NoIntegrator', '--set', 'controllers.NoIntegrater.gain=0.2']) == 1
     words = 'fail options controllers.NoIntegrater: there is no such controller: '
     assert words in ' '.join(capfd.readouterr().out.split())
+
+
+def test_a_file_that_is_not_there_is_named_before_any_check(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert program.main(['designs/absent.yaml']) == 1
+    assert_one_line(capsys.readouterr().err, 'ddct check', 'designs/absent.yaml: no such file')

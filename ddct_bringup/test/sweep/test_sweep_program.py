@@ -163,6 +163,7 @@ BAD = {
     ),
     'unknown controller': (['--over', 'gear=1', '--controllers', 'nope'], "'nope'"),
     'refused option': (['--over', 'controllers.pi.integral_gain=x,1'], 'integral_gain'),
+    'unknown after a heading': (['--over', 'gear=1', '--metrics', 't_a,spets'], 'metric spets'),
     'unknown metric': (['--over', 'gear=1', '--metrics', 'steps,spets'], 'did you mean steps'),
     'no metric': (['--over', 'gear=1', '--metrics', ','], '--metrics is empty'),
     'no picture': (['--over', 'gear=1', '--figure', 'wear.pdf'], '.png, .svg or .html'),

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ddct_controllers.check.checks import FAIL, Outcome, check_controller
+from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.template.package import write_new
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.files.output_file import require_place
@@ -69,6 +70,8 @@ def _check(argv: list[str]) -> int:
     if options.out is not None:
         raise ParameterError('--out is the folder for --new NAME: leave it out')
     require_place('--json', options.json)
+    if is_controller_file(options.controller) and not Path(options.controller).exists():
+        raise ParameterError(f'{options.controller}: no such file')
     settings = KnownSettings(scenario_of(options, options.overrides))
     print(f'{PROGRAM}: trying {options.controller}', file=sys.stderr, flush=True)
     outcomes = check_controller(options.controller, settings)

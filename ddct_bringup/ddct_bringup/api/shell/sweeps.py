@@ -37,5 +37,7 @@ def planned_sweep(
 
 
 def metrics_called(option: str, text: str) -> list[Metric]:
-    """Return the metrics that the value of an option names; raise ParameterError."""
-    return [METRICS[name] for name in metrics_of(option, text, METRICS)]
+    """Return the metrics that an option names by key or heading; raise ParameterError."""
+    by_heading = {metric.symbol: key for key, metric in METRICS.items()}
+    names = [by_heading.get(name.strip(), name) for name in text.split(',')]
+    return [METRICS[name] for name in metrics_of(option, ','.join(names), METRICS)]

@@ -39,8 +39,8 @@ _DESCRIPTION = """\
 Draw the figures of the thesis that can be computed, as figure_<chapter>_<number>.png and
 .svg, with their data in .csv. The page index.html shows them in order. It says what agrees
 with the thesis and what does not, and why the other figures are not drawn. With --only the
-page shows just those. --controllers draws further controllers into each figure of runs:
-2.11 to 2.28, 3.10 to 3.19, 4.3 to 4.8 and 5.1."""
+page shows just those. --controllers draws further controllers into the figures of runs, which
+are 2.11 to 2.28, 3.10 to 3.19, 4.3 to 4.8 and 5.1."""
 _EXAMPLES = """\
 examples:
   ddct thesis figures --out figures
