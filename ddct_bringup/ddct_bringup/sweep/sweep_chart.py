@@ -19,7 +19,7 @@ from ddct_plant.program.table import Quantity
 
 _PANEL_PX, _LANE_PX, _LANES_PX, _MAP_PX = 230, 32, 60, 300
 _ACROSS = 3
-OTHER, NO_VALUE = 'other than engaged', 'engaged, no value'
+OTHER, NO_VALUE = 'other than engaged, at the edge without a value', 'engaged, no value'
 """Meanings of a cross and of a ring."""
 _HALF_LINE = 0.3
 """Half of the length of the line of a run at a name, where names are 1 apart."""
@@ -86,8 +86,9 @@ def _metric_panel(
     nothing = np.empty(0)
     items: list[Item] = [
         Marks(nothing, nothing, NEUTRAL, OTHER, 'x', size=9.0),
-        Marks(nothing, nothing, NEUTRAL, NO_VALUE, filled=False, size=9.0),
     ]
+    if np.any(engaged & ~np.isfinite(values)):
+        items.append(Marks(nothing, nothing, NEUTRAL, NO_VALUE, filled=False, size=9.0))
     for name, look, each, good in zip(names, looks(len(names)), values, engaged, strict=True):
         items += _of_controller(name, look, places, each, good, (low, high), joined=joined)
     label = ', '.join(filter(None, (figure.symbol, unit_text(figure.unit))))

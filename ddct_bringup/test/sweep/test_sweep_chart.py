@@ -112,7 +112,9 @@ def test_of_many_controllers_the_title_has_the_number():
 
 def test_an_engaged_run_without_a_value_is_a_ring_and_no_cross():
     runs = [(ENGAGED, 1.0), (ENGAGED, None), (NOT_ENGAGED, 1.5)]
-    panel = drawn(['wear_gain=0.8,1,1.2'], ['pi'], runs).panels[0]
+    chart = drawn(['wear_gain=0.8,1,1.2'], ['pi'], runs)
+    assert NO_VALUE in [key.label for key in legend(chart)]
+    panel = chart.panels[0]
     ring = marked(panel, NO_VALUE)
     assert (ring.x.tolist(), ring.y.tolist()) == ([1.0], [panel.y.span[0]])
     assert (ring.mark, ring.filled) == ('circle', False)
@@ -132,7 +134,7 @@ def test_the_lanes_show_every_state_in_its_own_colour():
     assert cells(chart.panels[-1]).names == [list(STATES), list(reversed(STATES))]
     assert len({STATE_COLOURS[state] for state in STATES}) == len(STATES)
     states_text = [state.replace('_', ' ') for state in STATES]
-    assert [key.label for key in legend(chart)] == [OTHER, NO_VALUE, 'pi', 'ls8', *states_text]
+    assert [key.label for key in legend(chart)] == [OTHER, 'pi', 'ls8', *states_text]
 
 
 def test_a_map_has_the_first_key_across_and_the_second_up():
