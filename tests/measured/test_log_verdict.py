@@ -3,15 +3,17 @@
 """A fit that cannot be right is refused: first in the output, with an exit code, no scenario."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from samples import sampled
-from support.logs import identify, judged, written
+from support.logs import drag, identify, judged, log_of, written
 from support.other_car import COLUMNS, TRUE, drive, late_log
 
-from ddct_bringup.identification.from_log.verdict import doubts
+from ddct_bringup.identification.from_log.stretches import stretches_of
+from ddct_bringup.identification.from_log.verdict import doubts, reasons_against
 from ddct_bringup.identification.identify import main
 from ddct_bringup.logs.log import SPEEDS
 from ddct_plant.program import progress
@@ -129,10 +131,14 @@ def test_a_clutch_torque_above_the_torque_that_speeds_up_a_locked_engine_is_no_t
     signals = drive().noisy(0)
     signals['shaft_speed'] = signals['engine_speed']
     signals['clutch_torque'] = np.full_like(signals['clutch_torque'], 350.0)
-    _, _, reasons = judged(signals, drive().time_s)
+    fit, predictions, reasons = judged(signals, drive().time_s)
     (reason,) = (each for each in reasons if 'exceeds' in each)
     assert 'clutch_torque exceeds engine_torque by' in reason
     assert 'is it the capacity or the request of the clutch' in reason
+    assert not any('does not determine' in each for each in reasons)
+    partly = replace(fit, undetermined=('engine_inertia', 'wheel_speed'))
+    missed = reasons_against(partly, predictions, stretches_of(log_of(signals), drag))[1]
+    assert missed.endswith('the log does not determine engine_inertia: give a log that does')
 
 
 @pytest.mark.nightly

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reasons for which a fit to a log is refused, and notes on an accepted one."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 import numpy as np
 
@@ -59,7 +59,7 @@ def reasons_against(
     """Return the reasons to refuse a fit to `stretches`, as sentences; none to accept it."""
     return [
         *reasons_in_log(stretches),
-        *_error_reasons(predictions),
+        *_error_reasons(predictions, fit.undetermined),
         *_parameter_reasons(fit),
     ]
 
@@ -132,13 +132,17 @@ def _impulse(stretch: Stretch) -> np.ndarray:
     return np.interp(stretch.time_s, stretch.grid_s, np.cumsum(engine - clutch) * step)
 
 
-def _error_reasons(predictions: Sequence[SpeedPrediction]) -> Iterator[str]:
+def _error_reasons(
+    predictions: Sequence[SpeedPrediction], undetermined: Collection[str]
+) -> Iterator[str]:
+    kept = ', '.join(sorted({*undetermined} & USUAL.keys()))
+    advice = f'; the log does not determine {kept}: give a log that does' if kept else ''
     for each in predictions:
         if each.error > MOST_ERROR:
             yield (
                 f'the held-out {each.signal} is missed by {each.rms_rad_s:.3g} rad/s r.m.s., '
                 f'{100.0 * each.error:.3g} % of its deviation beyond noise (at most '
-                f'{100.0 * MOST_ERROR:g} %)'
+                f'{100.0 * MOST_ERROR:g} %){advice}'
             )
 
 
