@@ -117,6 +117,28 @@ def test_an_unknown_program_is_one_line(
     assert capsys.readouterr().err == f'ddct: {line} ddct --help\n'
 
 
+@pytest.mark.parametrize(
+    ('arguments', 'line'),
+    [
+        (
+            ['thesis', 'number'],
+            'ddct thesis: unknown subcommand number: did you mean numbers? See ddct thesis --help',
+        ),
+        (
+            ['design', 'plant', '--nothing'],
+            'ddct design plant: unrecognized arguments: --nothing: see ddct design plant --help',
+        ),
+    ],
+)
+def test_a_mistake_in_a_subcommand_is_one_line(
+    arguments: list[str], line: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as end:
+        ddct.main(arguments)
+    assert end.value.code == 2
+    assert capsys.readouterr().err == f'{line}\n'
+
+
 def test_it_passes_on_the_arguments_and_the_exit_code(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -192,7 +192,7 @@ def run_subcommands(
             else:
                 subparsers.add_parser(name, help=command.help)
         if argv and not argv[0].startswith('-') and argv[0] not in commands:
-            what = f'unknown {metavar.lower()} {argv[0]}'
+            what = f'unknown subcommand {argv[0]}'
             parser.error(f'{what}: {close_name(argv[0], commands)}')
         options, unknown = parser.parse_known_args(argv)
         if unknown:
