@@ -172,9 +172,9 @@ def case_of_run(
     The engine of a run that always gave the demand stayed away from its limits: so it does in all
     these runs. Otherwise C_m is a variable. Where a run was clipped at zero capacity, these are.
     """
-    first = start.step
+    first, rules = start.step, rules or packaged_limits().rules
     end = first + lock.periods + 1
-    if why_outside(settings, start, lock, run):
+    if why_outside(settings, start, run, rules):
         return None
     limited = not gives_demand(run, first)
     capacity = capacity_range(settings, start.temperature_c)
@@ -187,7 +187,7 @@ def case_of_run(
         rigid_tube(settings, start, lock.time_s).with_run(run, first),
         limited,
         capacity,
-        rules or packaged_limits().rules,
+        rules,
         max(_most_request(settings), float(run.torque_request[first:].max())),
     )
 

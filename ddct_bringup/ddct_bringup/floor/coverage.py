@@ -8,7 +8,8 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.dynamics.capacity import stays_within
 from ddct_bringup.floor.dynamics.start import Start
 from ddct_bringup.floor.dynamics.torque_cut import cuts_as_usual
-from ddct_bringup.floor.lock import Lock
+from ddct_bringup.floor.lock import Lock, final_lock_of, lock_of
+from ddct_bringup.verdict.rules import Rules
 from ddct_plant.base.errors import DdctError
 from ddct_plant.models.engine_limits import fuel_is_cut
 from ddct_plant.scenario.settings import RunSettings
@@ -40,11 +41,17 @@ def cut_step(settings: RunSettings, run: Trajectory, start: int) -> int | None:
     return start + int(cuts[0]) if cuts.size else None
 
 
-def why_outside(settings: RunSettings, start: Start, lock: Lock, run: Trajectory) -> str:
-    """Return why no floor covers a run that locks once, in words after its name; '' if one may."""
+def why_outside(settings: RunSettings, start: Start, run: Trajectory, rules: Rules) -> str:
+    """Return why a run is none of those of a floor, in words after its name; '' if it is one."""
     first = start.step
+    if run.steps < settings.scenario.steps:
+        return 'ends early'
     if run.two_input:
         return 'commands the engine'
+    lock = lock_of(run, first, rules)
+    if lock is None:
+        parts = final_lock_of(run, first, rules) is not None
+        return 'slips again' if parts else 'does not lock for good'
     if not np.array_equal(np.maximum(run.torque_request[:first], 0.0), start.requests):
         return 'starts otherwise'
     if cut_step(settings, run, first) is not None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ddct_bringup.floor.coverage import why_outside
 from ddct_bringup.floor.dynamics.start import Start
 from ddct_bringup.floor.floor import floors_at, floors_of_run
 from ddct_bringup.floor.lock import lock_of
@@ -84,6 +85,8 @@ class ControllerRow:
     least: float | None
     over_floor: float | None
     certificate: Proof | None
+    outside: str
+    """Why the run is none of those of a floor; empty where it is one."""
 
 
 @dataclass(frozen=True)
@@ -133,10 +136,10 @@ def controller_rows(
     """
     Return a row for each metric of a controller's run, under the keys of `limit --json`.
 
-    Least and ratio are None where the run does not lock once and stay locked.
+    Least and ratio are None where the run is none of those of a floor.
     """
-    run = run_headless(settings, controller)
-    lock = lock_of(run, start.step, packaged_limits().rules)
+    run, rules = run_headless(settings, controller), packaged_limits().rules
+    lock = lock_of(run, start.step, rules)
     over: Mapping[str, OverFloor | None] = floors_of_run(settings, metrics, run, start)
     rows: list[ControllerRow] = []
     for metric in metrics:
@@ -152,6 +155,7 @@ def controller_rows(
                 least=found.floor.least if found else None,
                 over_floor=found.over_floor if found else None,
                 certificate=found.floor.certificate if found else None,
+                outside=why_outside(settings, start, run, rules),
             )
         )
     return rows

@@ -88,8 +88,8 @@ def _no_floor(floor: Floor) -> str:
 
 def _no_ratio(row: ControllerRow) -> str:
     """Return the reason of the dashes in a row of the controllers."""
-    if row.lock_time_s is None:
-        return 'the clutch does not lock for good'
+    if row.outside:
+        return f'{row.controller} {row.outside}: no floor covers it'
     if row.value is None:
         return 'the run has no value of this metric'
     return 'no least is known at that lock time' if row.least is None else 'the least is 0'

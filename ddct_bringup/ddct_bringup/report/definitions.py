@@ -51,9 +51,7 @@ _READING = (
         'the end of the run.',
     ),
     Definition('C_dem', 'torque that the driver demands of the engine.', 'N m'),
-    Definition(
-        '*', f'the run {YARDSTICK}. The least is of a run of the clutch alone that locks once.'
-    ),
+    Definition('*', f'{YARDSTICK}. The least is of a run of the clutch alone that locks once.'),
     Definition('▲', 'the value is beyond its limit.'),
 )
 _THESIS = (

@@ -35,6 +35,7 @@ from ddct_bringup.report.score_tables import (
     table_5_1_columns,
 )
 from ddct_bringup.run.description import short_commit
+from ddct_bringup.scores.engine_cut import cut_note
 from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.scores.scored_run import YARDSTICK
 from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE
@@ -119,6 +120,7 @@ def report_page(
         further=further,
         starred=parts.yardstick,
         yardstick=YARDSTICK,
+        cut=cut_note({run.label: run.scores.engine_cut for run in shown if run.scores.engine_cut}),
         withheld=any(run.scores.metrics['torque_late_s'] for run in runs),
         shift=shift,
         shift_phases=SHIFT_OPACITY if shift else {},

@@ -39,8 +39,8 @@ class MetricCell:
     """Hit or miss, for a predicted value of a valid run."""
     why_dash: str = ''
     """Reason why there is no value, empty where there is one."""
-    yardstick: bool = False
-    """Whether it is a ratio to a least that is no bound for the run."""
+    yardstick: str = ''
+    """Why the least of a ratio is no bound for the run, in words after its name; else empty."""
 
 
 def comparable_rows(runs: Sequence[ScoredRecording]) -> list[ThesisRow | None]:
@@ -80,7 +80,7 @@ def _cell(
         number_text(value, column.form),
         0.0 if value is None else abs(value) / largest,
         why_dash=scores.null_reasons.get(column.key, '') if value is None else '',
-        yardstick=column is JERK_OVER_LEAST and scores.least_is_bound is False,
+        yardstick=scores.outside if column is JERK_OVER_LEAST else '',
     )
     if row is None:
         return cell

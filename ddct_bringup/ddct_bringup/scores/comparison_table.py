@@ -65,7 +65,15 @@ def print_comparison(
         STATE,
     )
     has_row = any(thesis_row(run.controller or '') for run in runs)
-    print_runs(runs, columns, stream, title, [_NOTE] if has_row else [])
+    notes = [_NOTE] if has_row else []
+    print_runs(runs, columns, stream, title, [*notes, *_least_notes(runs)])
+
+
+def _least_notes(runs: Sequence[ScoredRun]) -> list[str]:
+    """Return the note on the least beside each ratio, which the table has no room for."""
+    least = [(run.bag, run.least_peak_jerk) for run in runs]
+    shown = ', '.join(f'{name} {value:.2g}' for name, value in least if value is not None)
+    return [f'least jerk in m/s^3, which falls with the lock time: {shown}'] if shown else []
 
 
 def _of_less_weight(column: RunColumn) -> RunColumn:

@@ -9,7 +9,7 @@ from typing import Literal
 
 from ddct_bringup.bag.run_facts import RunConditions, RunFacts, ShiftConditions
 from ddct_bringup.metrics.catalogue import FIGURES, METRICS, OTHERS
-from ddct_bringup.scores.scored_run import ScoredRun
+from ddct_bringup.scores.scored_run import LEAST_IS_BOUND, ScoredRun
 from ddct_bringup.verdict.limits import LimitResult, Limits
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.json_records import Inline, read_json
@@ -17,8 +17,6 @@ from ddct_plant.signals.gain_changes import GainChange
 
 FACTS = tuple(each.name for each in fields(RunConditions))
 """Conditions of a run in its entry, in order."""
-LEAST_IS_BOUND = 'least_is_bound'
-"""Key among the figures that is no number."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +64,7 @@ class ScoresEntry:
     limits: Sequence[LimitResult]
     """Metrics that have a limit."""
     null_reasons: Mapping[str, str]
-    """Why a figure or metric has no value, by its name."""
+    """Why a figure or metric has no value, by its name, and why `least_is_bound` is false."""
     fallbacks: int | None
     """
     How often a predictive controller had no solution and used its last plan; None for the others.
@@ -147,7 +145,11 @@ def _scores_entry(run: ScoredRun) -> ScoresEntry:
         figures=figures_entry(run),
         metrics={each.key: run.metrics[each.key] for each in OTHERS if each.key in shown},
         limits=run.limits,
-        null_reasons={key: why for key, why in run.null_reasons.items() if key in shown},
+        null_reasons={
+            key: why
+            for key, why in run.null_reasons.items()
+            if key in shown or key == LEAST_IS_BOUND
+        },
         fallbacks=run.fallbacks,
         safe_state=run.safe_state,
         scenario_changes=run.scenario_changes,

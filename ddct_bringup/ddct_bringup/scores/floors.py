@@ -8,14 +8,14 @@ from dataclasses import replace
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.case import case_at, case_of_run
 from ddct_bringup.floor.control_start import control_start
-from ddct_bringup.floor.coverage import FloorWithdrawnError, require_not_below
+from ddct_bringup.floor.coverage import FloorWithdrawnError, require_not_below, why_outside
 from ddct_bringup.floor.dynamics.start import Start
 from ddct_bringup.floor.dynamics.torque_cut import gives_demand
 from ddct_bringup.floor.floor import floor_of_case
-from ddct_bringup.floor.lock import Lock, final_lock_of, lock_of
+from ddct_bringup.floor.lock import Lock, final_lock_of
 from ddct_bringup.metrics.catalogue import JERK_OVER_LEAST
 from ddct_bringup.scores.scored_recording import ScoredRecording
-from ddct_bringup.scores.scored_run import ScoredRun
+from ddct_bringup.scores.scored_run import LEAST_IS_BOUND, ScoredRun
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.rules import Rules
 from ddct_plant.base.errors import DdctError
@@ -52,7 +52,7 @@ def scores_with_least(
 ) -> ScoredRun:
     """Return the scores of a run with its peak jerk over the least at its final lock."""
     try:
-        ratio, is_bound = _over_least(scores, settings, trajectory, limits.rules)
+        ratio, outside = _over_least(scores, settings, trajectory, limits.rules)
     except FloorWithdrawnError:
         raise
     except DdctError as error:
@@ -60,13 +60,19 @@ def scores_with_least(
         return replace(scores, null_reasons=reasons)
     reasons = {key: why for key, why in scores.null_reasons.items() if key != JERK_OVER_LEAST.key}
     metrics = {**scores.metrics, JERK_OVER_LEAST.key: ratio}
-    return replace(scores, metrics=metrics, null_reasons=reasons, least_is_bound=is_bound)
+    if outside:
+        reasons[LEAST_IS_BOUND] = outside
+    return replace(scores, metrics=metrics, null_reasons=reasons, least_is_bound=not outside)
 
 
 def _over_least(
     scores: ScoredRun, settings: RunSettings, trajectory: Trajectory, rules: Rules
-) -> tuple[float, bool]:
-    """Return the ratio, and whether its least is a bound; raise DdctError where it has none."""
+) -> tuple[float, str]:
+    """
+    Return the ratio, and why its least is no bound, '' if it is one.
+
+    Raise DdctError where the run has no ratio.
+    """
     value = scores.metrics['peak_jerk_m_s3']
     if not scores.valid or value is None:
         raise DdctError(scores.reason or scores.null_reasons['peak_jerk_m_s3'])
@@ -91,9 +97,9 @@ def _beside(
     start: Start,
     lock: Lock,
     rules: Rules,
-) -> tuple[float, bool]:
+) -> tuple[float, str]:
     """
-    Return a peak jerk over the least of the case, and whether that is a bound for the run.
+    Return a peak jerk over the least of the case, and why that is no bound for the run.
 
     The engine gives the demand, or what its limits allow where no run of the demand locks then.
     """
@@ -104,11 +110,13 @@ def _beside(
             break
     if not least:
         raise DdctError('no run of the clutch alone locks at that instant')
-    once = lock_of(trajectory, start.step, rules) is not None
-    own = case_of_run(settings, start, lock, trajectory, rules) if once else None
-    covered = own is not None and (limited or gives_demand(trajectory, start.step))
-    if own is not None and covered and value < least:
+    outside = why_outside(settings, start, trajectory, rules)
+    if not outside and not limited and not gives_demand(trajectory, start.step):
+        outside = 'meets full load or idle control'
+    if not outside and value < least:
         # The run may leave the speeds of a rigid car, but not those of its own case.
+        own = case_of_run(settings, start, lock, trajectory, rules)
+        assert own is not None, 'the run is one of those of a floor'
         least = min(least, floor_of_case(own, PEAK_JERK).least or least)
         require_not_below(PEAK_JERK, value, least, lock)
-    return value / least, covered
+    return value / least, outside

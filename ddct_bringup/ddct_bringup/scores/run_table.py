@@ -9,6 +9,7 @@ from typing import TextIO
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.metrics.catalogue import JERK_OVER_LEAST, METRICS, TABLE_5_1
 from ddct_bringup.metrics.metric import Metric
+from ddct_bringup.scores.engine_cut import cut_note
 from ddct_bringup.scores.run_notes import in_ms, run_notes
 from ddct_bringup.scores.scored_run import YARDSTICK, ScoredRun
 from ddct_plant.program.printed_table import print_table
@@ -43,7 +44,7 @@ def metric(
         form or quantity.form,
         value,
         undefined=lambda run: _why_null(quantity.key, run),
-        remark=lambda run: YARDSTICK if _no_bound(quantity, run) else '',
+        remark=lambda run: _remark(quantity, run),
         weight=weight,
     )
 
@@ -53,8 +54,11 @@ def _why_null(key: str, run: ScoredRun) -> str:
     return run.null_reasons.get(key, '') if run.valid else ''
 
 
-def _no_bound(quantity: Metric, run: ScoredRun) -> bool:
-    return quantity is JERK_OVER_LEAST and run.least_is_bound is False
+def _remark(quantity: Metric, run: ScoredRun) -> str:
+    """Return why the least beside a ratio is no bound for the run, empty without such a ratio."""
+    if quantity is not JERK_OVER_LEAST or not run.outside:
+        return ''
+    return f'{run.outside}: {YARDSTICK}'
 
 
 BAG: RunColumn = TextColumn(
@@ -104,6 +108,14 @@ FIGURE_COLUMNS = {
     key: metric(METRICS[key], heading, form, weight=weight, factor=factor)
     for key, (heading, form, weight, factor) in _HEADINGS.items()
 }
+_LEAST: RunColumn = TextColumn(
+    'least\nm/s^3',
+    '.1f',
+    lambda run: run.least_peak_jerk,
+    undefined=lambda run: _why_null(JERK_OVER_LEAST.key, run),
+    weight=Weight.DETAIL,
+)
+"""Least peak jerk, which falls with the lock time of the run."""
 _OF_LOCK = ('time_to_final_lock_s', 'releases')
 """Figures that a linear clutch never has."""
 _REALTIME: tuple[RunColumn, ...] = (
@@ -143,6 +155,7 @@ def figure_columns(runs: Sequence[ScoredRun]) -> tuple[RunColumn, ...]:
     if not any(run.is_shift for run in judged):
         of_shift = {key for key, each in METRICS.items() if each.of_shift}
         shown = [each for each in shown if each not in map(FIGURE_COLUMNS.get, of_shift)]
+    shown.insert(shown.index(FIGURE_COLUMNS[JERK_OVER_LEAST.key]) + 1, _LEAST)
     return (*own, *shown, STATE)
 
 
@@ -168,8 +181,10 @@ def print_runs(
     if any(run.facts and run.facts.mode == 'realtime' for run in runs):
         columns = [*columns[:-1], *_REALTIME, columns[-1]]
     of_runs = [f'{run.bag}: {note}' for run in runs for note in run_notes(run)]
+    cut = cut_note({run.bag: run.engine_cut for run in runs if run.engine_cut})
     invalid = [f'{run.bag}: not valid: {run.reason}' for run in runs if not run.valid]
-    table = table_of(title or '', columns, runs, complete='--json FILE', notes=[*of_runs, *notes])
+    every = [*of_runs, *([cut] if cut else []), *notes]
+    table = table_of(title or '', columns, runs, complete='--json FILE', notes=every)
     print_table(replace(table, warnings=invalid), stream)
 
 

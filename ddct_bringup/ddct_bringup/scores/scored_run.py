@@ -6,16 +6,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from ddct_bringup.bag.run_facts import MEASURED, RunConditions
-from ddct_bringup.metrics.catalogue import METRICS
+from ddct_bringup.metrics.catalogue import JERK_OVER_LEAST, METRICS
 from ddct_bringup.metrics.metric import Metrics
+from ddct_bringup.scores.engine_cut import EngineCut
 from ddct_bringup.verdict.limits import LimitResult
 from ddct_plant.signals.gain_changes import GainChange
 
-YARDSTICK = (
-    'commands the engine or meets its limits, slips again or starts otherwise: the least is a '
-    'yardstick, not a bound'
-)
-"""Reason of the star beside a ratio to the least that is no bound for its run."""
+LEAST_IS_BOUND = 'least_is_bound'
+"""Key of that in `figures`, and of its reason in `null_reasons`."""
+YARDSTICK = 'the least is a yardstick, not a bound'
+"""What the star beside a ratio to the least says."""
 
 
 @dataclass(frozen=True)
@@ -46,14 +46,27 @@ class ScoredRun:
     gain_changes: tuple[GainChange, ...] = ()
     """Gains of the controller that were changed while it ran."""
     null_reasons: Mapping[str, str] = field(default_factory=dict)
-    """Reason by metric that has no value."""
+    """Reason by metric that has no value, and why the least is no bound for the run."""
+    engine_cut: EngineCut | None = None
+    """First fuel cut of the engine after control start; None without one. No file has it."""
     least_is_bound: bool | None = None
     """
     Whether no run like this one can have a peak jerk below the least of `peak_jerk_over_least`.
 
-    False for a run that commands the engine or meets its limits, slips again or starts otherwise:
-    the least is then a yardstick. None without that figure.
+    False for a run that is none of those of the floor, with the reason in `null_reasons`: the
+    least is then a yardstick. None without that figure.
     """
+
+    @property
+    def least_peak_jerk(self) -> float | None:
+        """Least peak jerk in m/s^3 at the final lock of the run; None where it has none."""
+        jerk, ratio = self.metrics['peak_jerk_m_s3'], self.metrics[JERK_OVER_LEAST.key]
+        return jerk / ratio if jerk is not None and ratio else None
+
+    @property
+    def outside(self) -> str:
+        """Why the least is no bound for the run, in words after its name; empty where it is."""
+        return self.null_reasons.get(LEAST_IS_BOUND, '') if self.least_is_bound is False else ''
 
     @property
     def controller(self) -> str | None:

@@ -16,6 +16,7 @@ from ddct_bringup.metrics.plant import JudgedPlant
 from ddct_bringup.metrics.values import metrics_of, null_reasons, window_steps
 from ddct_bringup.run.timing_and_failure import RunTiming, failed_run
 from ddct_bringup.scores.bags import bag_name
+from ddct_bringup.scores.engine_cut import engine_cut
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.validity import engine_end, incomplete, safe_state, why_invalid
 from ddct_bringup.verdict.limits import Limits
@@ -72,6 +73,7 @@ def score_run(
         safe_state=None if facts.lockstep else safe_state(recording),
         scenario_changes=tuple(changed_values(settings.scenario)) if settings else None,
         gain_changes=recording.gain_changes,
+        engine_cut=engine_cut(settings, recording.trajectory) if settings else None,
         null_reasons={
             **null_reasons(engagement, metrics),
             JERK_OVER_LEAST.key: NOT_COMPUTED,

@@ -276,8 +276,7 @@ def test_a_run_whose_engine_meets_its_cut_is_outside_and_any_other_above_its_flo
         settings = RunSettings.of(load_scenario('upshift', changes), {})
         run = run_headless(settings, 'ls8')
         start = control_start(settings)
-        lock = lock_of(run, start.step, RULES)
-        assert why_outside(settings, start, lock, run) == outside
+        assert why_outside(settings, start, run, RULES) == outside
         over = floors_of_run(settings, ['peak_jerk'], run)['peak_jerk']
         assert (over is None) == bool(outside)
 

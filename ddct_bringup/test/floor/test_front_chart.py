@@ -13,7 +13,7 @@ from ddct_bringup.floor.values import Floor, Proof
 
 PROOF = Proof('weak_duality', 4.9, 'all runs')
 ROWS = [
-    ControllerRow(f'c{at}', 'peak_jerk', 1.0 + 0.01 * at, 10.0 + at, None, None, None)
+    ControllerRow(f'c{at}', 'peak_jerk', 1.0 + 0.01 * at, 10.0 + at, None, None, None, '')
     for at in range(12)
 ]
 

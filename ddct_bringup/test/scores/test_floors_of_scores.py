@@ -14,6 +14,7 @@ from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.floor import floor_of, floor_of_case
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.csv_text import score_row
+from ddct_bringup.scores.engine_cut import cut_note
 from ddct_bringup.scores.floors import with_least
 from ddct_bringup.scores.scored_recording import ScoredRecording, simulate_and_score
 from ddct_bringup.scores.scored_run import ScoredRun
@@ -73,23 +74,34 @@ def test_a_linear_clutch_locks_where_its_slip_stays_within_the_band_of_the_rules
 
 
 @pytest.mark.parametrize(
-    ('controller', 'settings'),
+    ('controller', 'settings', 'reason'),
     sampled(
         [
-            ('pi', settings_of('launch')),
-            ('torque_estimator', settings_of('launch')),
-            ('mpc4', settings_of()),
+            ('pi', settings_of('launch'), 'slips again'),
+            ('torque_estimator', settings_of('launch'), 'commands the engine'),
+            ('mpc4', settings_of(), 'commands the engine'),
         ],
         every=2,
     ),
-    ids=['slips again', 'commands the engine', 'commands the engine, linear'],
 )
 def test_for_a_run_that_does_more_than_lock_once_the_least_is_a_yardstick(
-    controller: str, settings: RunSettings
+    controller: str, settings: RunSettings, reason: str
 ) -> None:
     run = scored(controller, settings)
     assert run.metrics['peak_jerk_over_least'] is not None
-    assert run.least_is_bound is False
+    assert (run.least_is_bound, run.outside) == (False, reason)
+
+
+def test_a_note_names_the_runs_whose_peak_jerk_is_of_the_fuel_cut() -> None:
+    run = scored('ls8', RunSettings(KnownSettings(load_scenario('launch', CUT))))
+    assert run.engine_cut
+    earlier = replace(run.engine_cut, step=290, peak_jerk_step=120)
+    assert cut_note({'ls8': run.engine_cut, 'pi': earlier}) == (
+        'the engine reaches its cut, 440 rad/s, at 2.90 s in ls8, pi; the cut makes the peak jerk '
+        f'of ls8 ({run.engine_cut.peak_jerk_step / 100:.2f} s): shorten the drive: '
+        '--set duration_s=2.8'
+    )
+    assert cut_note({}) == ''
 
 
 @pytest.mark.parametrize(

@@ -82,9 +82,10 @@ def test_a_slip_that_has_grown_and_updates_longer_than_the_period_have_a_note():
 
 def test_a_ratio_to_a_least_that_is_no_bound_has_a_star_with_its_reason():
     ratios = {**STICKING, 'peak_jerk_over_least': 1.26}
-    text = printed([run('mpc4', least_is_bound=False, **ratios)])
+    why = {'least_is_bound': 'commands the engine'}
+    text = printed([run('mpc4', least_is_bound=False, null_reasons=why, **ratios)])
     assert ' 1.3* ' in text
-    assert f'\n  *  {YARDSTICK}\n' in text
+    assert f'\n  *  commands the engine: {YARDSTICK}\n' in text
     assert '*' not in printed([run('ls8', least_is_bound=True, **ratios)])
 
 

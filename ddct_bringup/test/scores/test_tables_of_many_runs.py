@@ -63,8 +63,8 @@ def headings_of(columns: tuple[RunColumn, ...]) -> list[str]:
 
 def test_the_absolute_jerk_is_beside_its_ratio_and_the_state_last() -> None:
     assert headings_of(figure_columns([run(**STICKING)])) == [
-        *('lock s', 'late s', 'jerk m/s^3', 'jerk /least', 'work kJ', 'A_w m/s^2'),
-        *('re- leases', 'state'),
+        *('lock s', 'late s', 'jerk m/s^3', 'jerk /least', 'least m/s^3'),
+        *('work kJ', 'A_w m/s^2', 're- leases', 'state'),
     ]
 
 
@@ -102,7 +102,8 @@ def test_runs_without_a_value_for_other_reasons_have_other_dashes() -> None:
 
 def test_only_the_run_whose_least_is_no_bound_has_a_star() -> None:
     runs = [run('pi', least_is_bound=True, **STICKING), run('ls8', **STICKING)]
-    text = printed([*runs, run('mpc4', least_is_bound=False, **STICKING)])
+    why = {'least_is_bound': 'slips again'}
+    text = printed([*runs, run('mpc4', least_is_bound=False, null_reasons=why, **STICKING)])
     assert [line.split()[0] for line in text.splitlines() if '2.3*' in line] == ['mpc4']
 
 
@@ -155,7 +156,8 @@ def test_a_narrow_terminal_shows_the_needed_columns_and_names_the_others(
     text = on_terminal([run('torque_estimator', **SHIFT)], monkeypatch)
     rows = ' '.join(line for line in text.splitlines() if 'torque_estimator' in line)
     assert {'1.12', '0.10', '11.3', '2.3', '7.7', '0.97', '3', 'engaged'} <= set(rows.split())
-    assert '  not shown: wear, dip %, flare rad/s, tie-up J; all with --json FILE\n' in text
+    hidden = 'wear, least m/s^3, dip %, flare rad/s, tie-up J'
+    assert f'  not shown: {hidden}; all with --json\n' in text
     assert 'not shown' not in on_terminal([run('torque_estimator', **SHIFT)], monkeypatch, 140)
 
 
@@ -163,4 +165,4 @@ def test_the_useful_dip_is_left_out_after_the_details_of_a_shift(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     text = on_terminal([run('ls8', **SHIFT)], monkeypatch, 85)
-    assert '  not shown: flare rad/s, tie-up J; all with' in text
+    assert '  not shown: least m/s^3, flare rad/s, tie-up J; all with' in text
