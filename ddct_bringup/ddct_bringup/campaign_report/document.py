@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The document of a campaign: how often, where, by what and how badly engagements fail."""
 
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -69,8 +68,7 @@ def campaign_document(summary: Summary, replay: str, page: PageParts | None = No
 
     `replay` is the command that makes the bag of the run INDEX.
     """
-    # Without the folder in which the result keeps files from outside of the specification's.
-    scenario = re.sub(r'\boutside_\d+/', '', page.facts[SCENARIO]) if page else ''
+    scenario = page.facts[SCENARIO] if page else ''
     return Document(
         'Campaign',
         f'Campaign, {scenario}' if scenario else 'Campaign',

@@ -14,6 +14,7 @@ from ddct_bringup.documents.page import html_page
 from ddct_bringup.documents.terminal import print_document
 from ddct_bringup.evaluation.summarise import summary_of
 from ddct_bringup.evaluation.summary import Summary, SummaryFile
+from ddct_bringup.manifest.inputs import own_place
 from ddct_bringup.manifest.manifest import MANIFEST, finish_manifest, keep_digests
 from ddct_bringup.run.output_folder import locked_folders
 from ddct_plant.files.json_records import write_json
@@ -64,7 +65,7 @@ def scenario_of(recorded: RecordedCampaign) -> str:
     plan = recorded.plan
     if {*CHOICES} & {*plan.grid}:
         return 'varied'
-    given = [str(plan.spec[key]) for key in CHOICES if key in plan.spec]
+    given = [own_place(str(plan.spec[key])) for key in CHOICES if key in plan.spec]
     return ', '.join(given) or DEFAULT_SCENARIO
 
 

@@ -4,6 +4,7 @@
 
 import hashlib
 import os
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -72,6 +73,11 @@ class InputFiles:
             except OSError as error:
                 raise DdctError(f'cannot be written ({error.strerror})', place=path) from error
             write_bytes(str(path), content)
+
+
+def own_place(place: str) -> str:
+    """Return a place without the folder for files from outside of the base, for a title."""
+    return re.sub(rf'^{_OUTSIDE}\d+/', '', place)
 
 
 def full_path(path: Path | str) -> Path:

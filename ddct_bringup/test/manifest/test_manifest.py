@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from ddct_bringup.manifest.inputs import InputFiles
+from ddct_bringup.manifest.inputs import InputFiles, own_place
 from ddct_bringup.manifest.manifest import (
     MANIFEST,
     RUNS,
@@ -104,6 +104,7 @@ def test_copies_stay_as_the_files_are_to_each_other(tmp_path: Path) -> None:
     assert inputs.add([tmp_path / 'spec' / 'sub' / '..' / 'sub' / 'own.csv']) == 'sub/own.csv'
     outside = inputs.add([tmp_path / 'other' / 'outer.yaml', tmp_path / 'lib' / 'c.so'])
     assert outside == 'outside_1/other/outer.yaml'
+    assert own_place(outside) == 'other/outer.yaml'
     assert inputs.add([tmp_path / 'x.py']) == 'outside_1/x.py'
     result = tmp_path / 'result'
     known = begun(result, inputs)
