@@ -34,7 +34,7 @@ _VALUE = re.compile(r'[A-Z]|INDEX|CASE')
 _WHOLE = (
     re.compile(r'`(ddct [^`]*)`'),
     re.compile(r'<code>(ddct [^<]*)</code>'),
-    re.compile(r'^ +(ddct (?:\S| (?! )|\\\n +)*)', re.MULTILINE),
+    re.compile(r'^ +(ddct (?:\\\n +|\S| (?! ))*)', re.MULTILINE),
 )
 """Whole commands: in marks, on a page, and on lines of their own, up to two spaces."""
 _PART = re.compile(r'\bddct [a-z][a-z-]*(?: --[a-z-]+)*')
@@ -121,15 +121,16 @@ def why_wrong(command: str, *, whole: bool) -> str:
     if words[1] == 'node':  # the arguments are those of ROS
         return '' if {*words[2:3]} <= {FILLED_IN, *node_names()} else 'no such node'
     main, parser = known_programs()[words[1]].load(), argparse.ArgumentParser
+    real = {'parse_args': parser.parse_args, 'parse_known_args': parser.parse_known_args}
 
     def parsed(self: Any, arguments: Any = None, namespace: Any = None) -> None:
         if whole:
-            real(self, arguments, namespace)
+            with mock.patch.multiple(parser, **real):
+                self.parse_args(arguments, namespace)
         raise ParsedError(self)
 
-    real = parser.parse_args
     try:
-        with mock.patch.object(parser, 'parse_args', parsed):
+        with mock.patch.multiple(parser, parse_args=parsed, parse_known_args=parsed):
             main(words[2:])
     except ParsedError as end:
         known = [option for each in parsers_in(end.args[0]) for option in option_names(each)]
