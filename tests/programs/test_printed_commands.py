@@ -121,7 +121,10 @@ def why_wrong(command: str, *, whole: bool) -> str:
     if words[1] == 'node':  # the arguments are those of ROS
         return '' if {*words[2:3]} <= {FILLED_IN, *node_names()} else 'no such node'
     main, parser = known_programs()[words[1]].load(), argparse.ArgumentParser
-    real = {'parse_args': parser.parse_args, 'parse_known_args': parser.parse_known_args}
+    real: dict[str, Any] = {
+        'parse_args': parser.parse_args,
+        'parse_known_args': parser.parse_known_args,
+    }
 
     def parsed(self: Any, arguments: Any = None, namespace: Any = None) -> None:
         if whole:
