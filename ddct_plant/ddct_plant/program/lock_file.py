@@ -7,6 +7,7 @@ import os
 from contextlib import suppress
 from pathlib import Path
 from typing import Self
+from weakref import WeakSet
 
 from ddct_plant.program.operating_system import open_files_stay
 
@@ -15,20 +16,27 @@ class LockFile:
     """
     A file that this process has locked, alone or, as `shared`, with others.
 
-    The lock is the operating system's: it ends with the process, however that ends. The last one
-    that has it removes the file.
+    The lock is the operating system's: it ends with the process, however that ends. A fork does
+    not have it. The last one that has it removes the file.
     """
 
     def __init__(self, path: Path, *, shared: bool = False) -> None:
         """Lock a file; raise BlockingIOError where another has it, OSError without a place."""
         self.path = path
         self._descriptor: int | None = _locked(path, shared=shared)
+        _taken.add(self)
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
         self.release()
+
+    def leave(self) -> None:
+        """Let go of the file in a fork: the lock stays that of the process which was forked."""
+        descriptor, self._descriptor = self._descriptor, None
+        if descriptor is not None:
+            os.close(descriptor)
 
     def release(self) -> None:
         """Give the lock back; nothing happens where it was given back."""
@@ -44,6 +52,19 @@ class LockFile:
             _lock(descriptor, shared=False)
             self.path.unlink()
         os.close(descriptor)
+
+
+_taken: WeakSet[LockFile] = WeakSet()
+
+
+def _leave_all() -> None:
+    for lock in [*_taken]:
+        lock.leave()
+
+
+if hasattr(os, 'register_at_fork'):
+    # Else a fork that outlives a killed program for a moment would keep its locks.
+    os.register_at_fork(after_in_child=_leave_all)
 
 
 def _locked(path: Path, *, shared: bool) -> int:
