@@ -11,7 +11,7 @@ When a worker dies, the blocks that it may have died of are computed one after t
 process of their own. One that ends this too is halved, down to the item that ends it.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
 from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
@@ -70,8 +70,8 @@ class WorkEngine(Generic[Item, Result]):
         """
         Yield each block when it is done, in any order.
 
-        Raise the exception of the work, DdctError where workers die one after the other, and
-        KeyboardInterrupt when the user has stopped the program.
+        Raise the exception of the work, of several that of the first block; DdctError where
+        workers die one after the other; KeyboardInterrupt when the user has stopped the program.
         """
         waiting = enumerate(blocks)
         running: dict[Future[Result], tuple[int, Sequence[Item]]] = {}
@@ -97,9 +97,14 @@ class WorkEngine(Generic[Item, Result]):
             if not running and not ended:
                 yield from apart
                 return
-            for future in self._finished(running):
+            for future in sorted(self._finished(running), key=lambda each: running[each][0]):
                 place, items = running.pop(future)
-                if self._ended(self.workers, future, items):
+                try:
+                    has_ended = self._ended(self.workers, future, items)
+                except Exception:
+                    self._require_results(running, place)
+                    raise
+                if has_ended:
                     ended[place] = items
                 else:
                     self._killed = 0
@@ -163,6 +168,20 @@ class WorkEngine(Generic[Item, Result]):
             self.workers.require_alive()
             return ended
         raise self.work.error(items, error) if isinstance(error, Exception) else error
+
+    def _require_results(
+        self, running: Mapping['Future[Result]', tuple[int, Sequence[Item]]], place: int
+    ) -> None:
+        """
+        Wait for the blocks before `place`, and raise the error of the first that has one.
+
+        Blocks begin in their order, so that an error does not depend on which worker was faster.
+        """
+        before = {future: block for future, block in running.items() if block[0] < place}
+        while waiting := [future for future in before if not future.done()]:
+            self._finished(waiting)
+        for future, (_, items) in sorted(before.items(), key=lambda each: each[1][0]):
+            self._ended(self.workers, future, items)
 
     def _finished(self, futures: Iterable[Future[Result]]) -> set[Future[Result]]:
         """Return the finished ones of futures, none after `_POLL_S`."""

@@ -123,6 +123,24 @@ def test_an_exception_of_the_work_is_raised_as_it_is() -> None:
     assert not multiprocessing.active_children()
 
 
+def test_of_several_exceptions_that_of_the_first_block_is_raised_whichever_comes_first(
+    tmp_path: Path,
+) -> None:
+    failed = tmp_path / 'failed'
+
+    def work(item: int) -> None:
+        if item:
+            failed.touch()
+        while not failed.exists():
+            time.sleep(0.01)
+        time.sleep(0.0 if item else 0.3)
+        raise ValueError(f'item {item}')
+
+    with pytest.raises(ValueError, match='^item 0$'):
+        values(work, 1)
+    assert not multiprocessing.active_children()
+
+
 def test_blocks_are_handed_over_as_they_are_needed() -> None:
     computed: list[int] = []
 
