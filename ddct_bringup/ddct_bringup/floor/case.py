@@ -2,14 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs that a floor covers, as rows of a program: they start alike and lock at one instant."""
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.floor.coverage import why_outside
+from ddct_bringup.floor.coverage import shorter_drive, why_outside
 from ddct_bringup.floor.dynamics.capacity import CapacityRange, capacity_range
 from ddct_bringup.floor.dynamics.engine_laws import EngineLaw, demand_law, engine_law
 from ddct_bringup.floor.dynamics.laws import Law, load_law
@@ -154,11 +153,10 @@ def _require_fuel(case: Case) -> None:
     if reached.size:
         # The rigid car of an unstable model means nothing.
         require_stable(scenario.name, scenario.controlled_driveline, case.load, case.engine)
-        time_s = time_of_step(case.start.step + int(reached[0]))
-        before_s = (math.ceil(10.0 * time_s - 1e-6) - 1) / 10.0
+        step = case.start.step + int(reached[0])
         raise ParameterError(
-            f'the engine reaches its cut, {cut:g} rad/s, at {time_s:.2f} s: there is no floor; '
-            f'shorten the drive: --set duration_s={before_s:g}',
+            f'the engine reaches its cut, {cut:g} rad/s, at {time_of_step(step):.2f} s: there is '
+            f'no floor; {shorter_drive(step)}',
             key='duration_s',
         )
 

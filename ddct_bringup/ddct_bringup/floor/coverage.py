@@ -41,6 +41,11 @@ def cut_step(settings: RunSettings, run: Trajectory, start: int) -> int | None:
     return start + int(cuts[0]) if cuts.size else None
 
 
+def shorter_drive(step: int) -> str:
+    """Return how to end a drive before the engine is cut at `step`, at a tenth of a second."""
+    return f'shorten the drive: --set duration_s={(step - 1) // 10 / 10.0:g}'
+
+
 def why_outside(settings: RunSettings, start: Start, run: Trajectory, rules: Rules) -> str:
     """Return why a run is none of those of a floor, in words after its name; '' if it is one."""
     first = start.step

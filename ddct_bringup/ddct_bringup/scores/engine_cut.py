@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.floor.coverage import cut_step
+from ddct_bringup.floor.coverage import cut_step, shorter_drive
 from ddct_bringup.metrics.lockup import Lockup
 from ddct_bringup.metrics.signals.vibration import jerk
 from ddct_plant.base.timebase import time_of_step
@@ -56,5 +56,5 @@ def cut_note(cuts: Mapping[str, EngineCut]) -> str:
     if peaks:
         note += f'; the cut makes the peak jerk of {", ".join(peaks)}'
     if all(each.locked_before for each in cuts.values()):
-        note += f': shorten the drive: --set duration_s={(first.step - 1) // 10 / 10.0:g}'
+        note += f': {shorter_drive(first.step)}'
     return note

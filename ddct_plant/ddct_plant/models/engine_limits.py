@@ -96,12 +96,16 @@ class EngineLimits(OptionGroup, prefix='engine_limits.'):
             return STALLED
         return OVER_REVVED if speed >= self.over_rev_rad_s else None
 
+    def cuts_fuel(self, speed: float, cut: bool) -> bool:
+        """Return whether the rev limiter cuts the fuel at w_m in rad/s; `cut`: it did before."""
+        return speed >= (self.resume_rad_s if cut else self.cut_rad_s)
+
 
 def fuel_is_cut(limits: EngineLimits, speeds: np.ndarray) -> np.ndarray:
     """Return at which steps the rev limiter cuts the fuel, (n,), for w_m in rad/s from t_0 on."""
     cut, cuts = False, np.zeros(len(speeds), dtype=bool)
     for k, speed in enumerate(speeds.tolist()):
-        cuts[k] = cut = speed >= (limits.resume_rad_s if cut else limits.cut_rad_s)
+        cuts[k] = cut = limits.cuts_fuel(speed, cut)
     return cuts
 
 
@@ -137,10 +141,9 @@ class LimitedEngine:
         if self.end_cause == STALLED:
             return 0.0
         friction = float(np.interp(speed, self._speeds, self._friction))
-        if speed >= (limits.resume_rad_s if self._cut else limits.cut_rad_s):
-            self._cut = True
+        self._cut = limits.cuts_fuel(speed, self._cut)
+        if self._cut:
             return -friction
-        self._cut = False
         most = float(np.interp(speed, self._speeds, self._full_load))
         return min(max(request, self._idle(speed), -friction), most)
 
