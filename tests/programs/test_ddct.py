@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from support.complaints import assert_one_line
 from support.processes import Programs, processes_left
-from waiting import WITHIN_S
+from waiting import WITHIN_S, wait_until
 
 from ddct_bringup import processes
 from ddct_bringup.programs import ddct, node
@@ -290,4 +290,5 @@ def test_a_fork_server_started_in_vain_ends_with_its_program(programs: Programs)
     program = programs.start([sys.executable, '-P', '-c', start, 'compare'])
     assert program.wait() == 1
     assert_one_line(program.errors(), 'ddct compare', '--out is missing')
-    assert not processes_left()
+    assert not any('forkserver' in command for command in processes_left().values())
+    wait_until(lambda: not processes_left(), 'the end of the git that the server has asked', 20.0)
