@@ -140,6 +140,8 @@ class PageCharts:
     @property
     def data(self) -> dict[str, object]:
         """What `drawCharts` of the page's script takes: the document, and ids by place."""
+        if not self:  # importing Bokeh takes as long as many runs
+            return {'document': None, 'roots': {}}
         document, ids = bokeh_json(list(self._figures.values()))
         return {'document': document, 'roots': dict(zip(self._figures, ids, strict=True))}
 

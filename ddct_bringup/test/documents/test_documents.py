@@ -4,6 +4,7 @@
 
 import io
 import re
+import sys
 
 import numpy as np
 from refusals import refused
@@ -129,3 +130,9 @@ def test_a_notebook_has_the_tables_and_figures_of_the_document_by_their_titles()
     assert picture['text/plain'] == 'over time'
     with refused(ParameterError, 'Time'):
         given_by.table('Time')
+
+
+def test_a_page_without_a_chart_does_without_bokeh(monkeypatch):
+    monkeypatch.setitem(sys.modules, 'bokeh.document', None)
+    page = html_page(Document('Kind', 'title', 'lead', [Note('text')]))
+    assert '"roots":{}' in page
