@@ -27,6 +27,8 @@ from ddct_bringup.evaluation.case_figures import FIGURES, LEVEL, CaseFigures
 
 RELATIVE_DIFFERENCE = 0.05
 """Part of the larger value by which two values have to differ."""
+ROUNDING = 1e-9
+"""Relative difference of equal values: kernels of linear algebra differ by less."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +107,8 @@ def compare(first: CaseFigures, second: CaseFigures) -> PairedComparison:
     )
     ours, theirs = (np.where(np.isnan(each), np.inf, each) for each in (ours, theirs))
     with np.errstate(invalid='ignore'):
-        difference = np.where(ours == theirs, 0.0, ours - theirs)
+        same = np.isclose(ours, theirs, rtol=ROUNDING, atol=0.0)
+        difference = np.where(same, 0.0, ours - theirs)
         least = np.array([[each.least_difference] for each in FIGURES])
         larger = np.maximum(ours, theirs)
         margin = np.where(np.isinf(larger), least, np.maximum(least, RELATIVE_DIFFERENCE * larger))

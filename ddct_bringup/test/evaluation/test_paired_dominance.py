@@ -136,6 +136,17 @@ def test_a_median_difference_that_is_worse_prevents_it() -> None:
     assert not found.dominates(among=2)
 
 
+@pytest.mark.parametrize(
+    ('factor', 'median', 'worse'), [(1.0 + 1e-12, 0.0, False), (1.0 + 1e-8, 1e-6, True)]
+)
+def test_a_difference_by_rounding_is_none(factor: float, median: float, worse: bool) -> None:
+    """Controllers of the same torque differ by it where they ran on unlike processors."""
+    found = compare(figures_of(friction_work_j=100.0 * factor), figures_of())
+    work = found.figures[NAMES[WORK]]
+    assert work.median_difference == pytest.approx(median)
+    assert work.worse_in_median is worse
+
+
 def test_the_median_difference_counts_failures_as_infinite_and_leaves_null_cases_out() -> None:
     def median(ours: CaseFigures, theirs: CaseFigures) -> tuple[float | None, bool]:
         found = compare(ours, theirs).figures[NAMES[JERK]]
