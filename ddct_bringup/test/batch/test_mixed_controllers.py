@@ -24,7 +24,8 @@ NAMES = ('pi', 'ls8', 'mpc3', 'pi', 'mpc_preview', 'least_jerk', 'ls3', 'mpc3')
 def test_a_result_does_not_depend_on_the_controllers_of_other_runs(
     scenario: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    known = KnownSettings(load_scenario(scenario))
+    short = {'duration_s': 1.2, 'control_start_s': 0.2, 'score_window_s': [0.2, 1.1]}
+    known = KnownSettings(load_scenario(scenario, short))
     runs = [
         (
             RunSettings(known, CaseSettings(wear_gain=0.8 + 0.05 * place)),

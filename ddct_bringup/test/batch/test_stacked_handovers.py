@@ -20,7 +20,7 @@ from ddct_plant.models.load import RoadLoad
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
-STEPS, RUNS = 120, 33
+STEPS, RUNS = 120, 17
 
 
 class Recorded(Handover):

@@ -79,7 +79,9 @@ def _stacked(values: Sequence[Any]) -> np.ndarray:
     return stack
 
 
-def alone(settings: RunSettings, trajectory: Trajectory) -> ScoredRun:
+@cache
+def alone(*case: Any) -> ScoredRun:
+    settings, trajectory = run_of(*case)
     recording = recording_in_memory(settings, 'any', trajectory)
     return score_run(recording, '', packaged_limits(), RunTiming())
 
@@ -92,16 +94,15 @@ def judged(run: ScoredRun) -> tuple[object, ...]:
 
 @pytest.mark.parametrize('cases', STACKS, ids=NAMES)
 def test_each_run_of_a_stack_is_judged_to_the_last_bit_as_alone(cases):
-    runs = [run_of(*case) for case in cases]
-    found = in_a_stack(runs)
-    for run, ours in zip(runs, found, strict=True):
-        assert judged(ours) == judged(alone(*run))
+    found = in_a_stack([run_of(*case) for case in cases])
+    for case, ours in zip(cases, found, strict=True):
+        assert judged(ours) == judged(alone(*case))
 
 
 def test_the_stacks_have_runs_of_several_states():
-    states = {alone(*run_of(*case)).state for cases in STACKS for case in cases}
+    states = {alone(*case).state for cases in STACKS for case in cases}
     assert states == {'engaged', 'late', 'not_engaged', 'stalled', 'tied_up'}
-    releases = [alone(*run_of(*case)).metrics['releases'] for case in RELEASES]
+    releases = [alone(*case).metrics['releases'] for case in RELEASES]
     assert max(releases) > 0
 
 

@@ -7,20 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from batch_runs import bits_of, engine, friction, road, sensors, short_run, simulated, some
+from batch_runs import bits_of, engine, friction, road, sensors, short_run, some
+from step_by_step import batch_of, step_by_step
 
 from ddct_bringup.batch.batchable import why_not_batchable
-from ddct_bringup.batch.run_batch import run_batch
-from ddct_bringup.campaign.rows import scored_headless
-from ddct_bringup.run.headless import run_headless
-from ddct_bringup.verdict.limits import packaged_limits
-from ddct_controllers.from_python import chosen_from
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
-LIMITS = packaged_limits()
 DRIVES = ('launch', 'launch_gentle', 'launch_hill', 'launch_hot', 'tip_in')
 CARS = ('c635', 'c635_no_limits', 'city7')
 ARCHITECTURES = ('detailed', 'detailed', 'feedforward', 'base')
@@ -66,17 +61,24 @@ def runs():
     return found
 
 
-def test_signals_events_and_lengths_are_those_of_the_run_step_by_step(runs):
+@pytest.fixture(scope='module')
+def batch(runs):
+    return batch_of(runs)
+
+
+@pytest.fixture(scope='module')
+def serial(runs):
+    return [step_by_step(*run) for run in runs]
+
+
+def test_signals_events_and_lengths_are_those_of_the_run_step_by_step(runs, batch, serial):
+    assert {why_not_batchable(*run) for run in runs} == {''}
     kinds: Counter[str] = Counter()
     ends, unsure = set(), 0
-    for place, signals in simulated(runs):
-        settings, controller = runs[place]
-        assert not why_not_batchable(settings, controller)
+    for (settings, _), (_, signals), (_, expected) in zip(runs, batch, serial, strict=True):
         if signals is None:
             unsure += 1
             continue
-        controller.reset()
-        expected = run_headless(settings, controller)
         ends.add(expected.steps < settings.scenario.steps)
         for name, ours in signals.items():
             theirs = getattr(expected, name)
@@ -104,12 +106,11 @@ def assert_same_events(ours, theirs):
     return kinds
 
 
-def test_figures_states_and_limits_are_those_of_the_run_step_by_step(runs):
+def test_figures_states_and_limits_are_those_of_the_run_step_by_step(batch, serial):
     states: Counter[str] = Counter()
-    for (settings, controller), ours in zip(runs, run_batch(runs, LIMITS), strict=True):
+    for (ours, _), (expected, _) in zip(batch, serial, strict=True):
         if ours is None:
             continue
-        expected = scored_headless(settings, chosen_from(controller, 'same'), LIMITS)
         states[ours.state] += 1
         assert (ours.valid, ours.reason, ours.state, ours.why) == (
             *(expected.valid, expected.reason, expected.state, expected.why),
@@ -120,7 +121,7 @@ def test_figures_states_and_limits_are_those_of_the_run_step_by_step(runs):
         for limit, other in zip(ours.limits, expected.limits, strict=True):
             assert limit == replace(other, value=limit.value)
     assert len(states) >= 3
-    assert sum(states.values()) >= 0.9 * len(runs)
+    assert sum(states.values()) >= 0.9 * len(batch)
 
 
 @pytest.mark.parametrize('size', [1, 2, 3, 33])

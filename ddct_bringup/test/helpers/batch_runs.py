@@ -77,6 +77,15 @@ def short_run(seed):
     return settings, make_controller('ls8', settings.known)
 
 
+def signals_until_end(stack, index):
+    """Return the signals of a run of a stack up to its end, or None if it is unsure."""
+    if stack.unsure[index]:
+        return None
+    end = int(stack.last[index]) + 1
+    signals = part_of_stack(stack.trajectory, index).signals
+    return {name: values[:end] for name, values in signals.items()}
+
+
 def simulated(runs):
     """Yield the place of each run with its signals in a batch up to its end, or None if unsure."""
     groups = defaultdict(list)
@@ -86,10 +95,7 @@ def simulated(runs):
         settings, controllers = zip(*[runs[place] for place in places], strict=True)
         found = simulate_batch(settings, controllers)
         for index, place in enumerate(places):
-            end = int(found.last[index]) + 1
-            signals = part_of_stack(found.trajectory, index).signals
-            cut = {name: values[:end] for name, values in signals.items()}
-            yield place, None if found.unsure[index] else cut
+            yield place, signals_until_end(found, index)
 
 
 def bits_of(runs):
