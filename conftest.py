@@ -7,7 +7,6 @@ import os
 import shutil
 import signal
 import tempfile
-from collections.abc import Iterator
 from pathlib import Path
 
 import hypothesis
@@ -76,9 +75,9 @@ def pytest_collection_finish() -> None:
     gc.enable()
 
 
-@pytest.fixture
-def nothing_frozen() -> Iterator[None]:
-    """Undo this for a test; later ones would search all that is loaded for garbage."""
-    gc.unfreeze()
-    yield
-    gc.freeze()
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:
+    """Exempt what a file has loaded too: each graph of the next ones would search it."""
+    if nextitem is not None and nextitem.path != item.path:
+        gc.collect()
+        gc.freeze()

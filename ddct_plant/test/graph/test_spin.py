@@ -24,6 +24,14 @@ from ddct_plant.graph.spin import LAST_SLICE_S, SLICE_S, end_of, finish_node, sp
 pytestmark = pytest.mark.slow
 
 
+@pytest.fixture
+def nothing_frozen():
+    """Undo what the suite freezes, and freeze it again."""
+    gc.unfreeze()
+    yield
+    gc.freeze()
+
+
 class FakeExecutor:
     """Executor that stores the garbage collector's settings during a spin, and ends the spin."""
 
@@ -42,16 +50,23 @@ class FakeExecutor:
 @pytest.mark.parametrize(
     ('fails', 'frozen'), sampled(itertools.product([False, True], repeat=2), every=3)
 )
-@pytest.mark.usefixtures('nothing_frozen')
-def test_the_garbage_collector_is_set_for_the_run_and_then_as_before(fails, frozen):
+def test_the_garbage_collector_is_set_for_the_run_and_then_as_before(
+    monkeypatch, nothing_frozen, fails, frozen
+):
     if frozen:
         gc.freeze()
     before = gc.isenabled(), gc.get_freeze_count()
+    frozen_at_collections = []
+    # A real one would search all that the tests before have loaded.
+    monkeypatch.setattr(
+        gc, 'collect', lambda: frozen_at_collections.append(gc.get_freeze_count() > 0)
+    )
     executor: Any = FakeExecutor(fails)
     try:
         spin_until(executor, Future())
     except RuntimeError:
         assert fails
+    assert frozen_at_collections == [frozen], 'it collects before it freezes'
     assert executor.frozen > before[1] or frozen
     assert before[0] and not executor.enabled
     assert gc.isenabled()
