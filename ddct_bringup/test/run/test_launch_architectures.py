@@ -3,6 +3,7 @@
 """The architectures with a stored reference run in the scenarios for the clutch that sticks."""
 
 import itertools
+from functools import cache
 
 import numpy as np
 import pytest
@@ -21,6 +22,7 @@ WITH_ONE_CLUTCH = [name for name in scenario_names() if not load_scenario(name).
 FOR_STICK_SLIP = [name for name in WITH_ONE_CLUTCH if load_scenario(name).of_stick_slip]
 
 
+@cache
 def run(name, architecture, wear_gain=1.0):
     settings = RunSettings(
         KnownSettings(load_scenario(name), architecture), CaseSettings(wear_gain=wear_gain)

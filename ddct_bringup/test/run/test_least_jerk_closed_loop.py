@@ -44,7 +44,7 @@ def locked(run):
         itertools.product(
             [*LAUNCHES, 'thesis_sticking', 'upshift', 'upshift_2_3'], [1.3, 0.7, 1.0]
         ),
-        every=2,
+        every=4,
     ),
 )
 def test_it_locks_and_stays_locked(scenario, wear_gain):
@@ -61,7 +61,7 @@ def test_it_locks_and_stays_locked(scenario, wear_gain):
     ('scenario', 'ratio'),
     sampled(
         [('launch', 1.35), ('launch_hot', 1.5), ('thesis_sticking', 1.5), ('upshift_light', 1.5)],
-        every=3,
+        every=4,
     ),
 )
 def test_its_peak_jerk_is_near_the_least_of_its_own_lock_time(scenario, ratio):
@@ -159,7 +159,9 @@ def weighted(settings, run):
     return value_of(settings, 'weighted_acceleration', run, settings.scenario.control_start_step)
 
 
-@pytest.mark.parametrize('scenario', ['upshift', 'upshift_hot', 'upshift_light', 'upshift_2_3'])
+@pytest.mark.parametrize(
+    'scenario', sampled(['upshift', 'upshift_hot', 'upshift_light', 'upshift_2_3'], every=2)
+)
 def test_torque_that_rises_fast_after_the_torque_phase_adds_comfort_and_no_peak_jerk(scenario):
     settings, run = run_of(scenario)
     _, evenly = run_of(scenario, 1.0, f'controllers.{NAME}.refill_s=10')

@@ -2,11 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The claims of docs/controllers/mpc.md on clutch and engine together hold in its scenario."""
 
+import itertools
 import math
+from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
+from samples import sampled
 
 from ddct_bringup.reproduction.studies.changed_loops import (
     LoopWithoutActuator,
@@ -39,6 +42,7 @@ START = SETTINGS.scenario.control_start_step
 BOTH = ('mpc4', 'mpc4_wear')
 
 
+@cache
 def run(controller, *changes, wear_gain=1.0, architecture='detailed'):
     scenario = load_scenario('thesis', changes)
     return run_headless(
@@ -185,7 +189,7 @@ def test_with_the_wear_estimated_it_is_as_smooth_at_every_wear(wear_gain):
     assert abs(trajectory.engine_torque[-1] - trajectory.torque_demand[-1]) < 5.0
 
 
-@pytest.mark.parametrize('wear_gain', [0.2, 0.33, 0.47, 0.5])
+@pytest.mark.parametrize('wear_gain', sampled([0.2, 0.33, 0.47, 0.5], every=3))
 def test_a_clutch_worn_beyond_its_bounds_runs_away_and_the_run_goes_on_to_its_end(wear_gain):
     """The capacity of a clutch that sticks is limited: the slip grows and the loop diverges."""
     scenario = load_scenario('thesis_sticking', ['duration_s=6'])
@@ -196,8 +200,9 @@ def test_a_clutch_worn_beyond_its_bounds_runs_away_and_the_run_goes_on_to_its_en
     assert trajectory.slip_speed[-1] > 1000.0
 
 
-@pytest.mark.parametrize('name', BOTH)
-@pytest.mark.parametrize('architecture', ARCHITECTURES)
+@pytest.mark.parametrize(
+    ('architecture', 'name'), sampled(itertools.product(ARCHITECTURES, BOTH), every=3)
+)
 def test_they_run_in_every_architecture_and_reset_completely(name, architecture):
     scenario = load_scenario('thesis', ['duration_s=1.0'])
     settings = RunSettings(KnownSettings(scenario, architecture), CaseSettings(wear_gain=1.1))

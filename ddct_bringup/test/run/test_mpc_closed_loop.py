@@ -2,9 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """MPC1-3 in the closed loop agree with their pages."""
 
+import itertools
+
 import numpy as np
 import pytest
 import scipy.linalg
+from samples import sampled
 
 from ddct_bringup.reproduction.studies import readings as module
 from ddct_bringup.reproduction.studies.readings import readings
@@ -12,7 +15,6 @@ from ddct_bringup.reproduction.studies.study import TABLE_5_1, cells
 from ddct_bringup.reproduction.study_run import (
     THESIS_SCENARIO,
     StudyRun,
-    study_run,
     thesis_run,
 )
 from ddct_bringup.run.headless import run_headless
@@ -28,6 +30,7 @@ from ddct_plant.scenario.settings import KnownSettings, RunSettings
 pytestmark = pytest.mark.slow
 
 SETTINGS = RunSettings(KnownSettings(THESIS_SCENARIO))
+EVERYWHERE = [*itertools.product(TABLE_4_1, ARCHITECTURES)]
 
 
 @pytest.fixture(scope='module')
@@ -100,8 +103,7 @@ def with_full_information(name):
     return PREDICTIVE[name](ControllerContext(SETTINGS.known, options))
 
 
-@pytest.mark.parametrize('name', TABLE_4_1)
-@pytest.mark.parametrize('architecture', ARCHITECTURES)
+@pytest.mark.parametrize(('name', 'architecture'), sampled(EVERYWHERE, every=3))
 def test_with_full_information_slip_ends_at_zero_without_a_fallback(name, architecture):
     run = run_headless(
         RunSettings(KnownSettings(THESIS_SCENARIO, architecture)), with_full_information(name)
@@ -110,8 +112,7 @@ def test_with_full_information_slip_ends_at_zero_without_a_fallback(name, archit
     assert {dict(status).get('fallbacks', '0') for status in run.status} == {'0'}
 
 
-@pytest.mark.parametrize('name', TABLE_4_1)
-@pytest.mark.parametrize('architecture', ARCHITECTURES)
+@pytest.mark.parametrize(('name', 'architecture'), sampled(EVERYWHERE, every=3))
 def test_as_drawn_an_error_stays_that_section_6_1_would_remove_by_an_integrator(
     name, architecture
 ):
@@ -135,10 +136,9 @@ def test_as_drawn_mpc3_is_what_a_simulation_of_its_own_gives():
 
 
 def test_mpc_preview_is_mpc3_with_full_information():
-    runs = [
-        run_headless(SETTINGS, each) for each in (with_full_information('mpc3'), 'mpc_preview')
-    ]
-    assert runs[0].sha256() == runs[1].sha256()
+    informed = run_headless(SETTINGS, with_full_information('mpc3'))
+    preview = thesis_run('mpc_preview', 'detailed', 1.0).trajectory
+    assert informed.sha256() == preview.sha256()
 
 
 @pytest.mark.parametrize(
@@ -171,15 +171,12 @@ def test_wear_leaves_an_error_that_the_thesis_rates_bad(wear_gain):
 
 
 def test_both_solvers_give_the_same_run():
-    runs = [
-        run_headless(
-            SETTINGS, PREDICTIVE['mpc3'](ControllerContext(SETTINGS.known, {'backend': b}))
-        )
-        for b in ('daqp', 'osqp')
-    ]
-    difference = np.abs(runs[0].torque_request - runs[1].torque_request).max()
+    usual = thesis_run('mpc3', 'detailed', 1.0).trajectory
+    osqp = PREDICTIVE['mpc3'](ControllerContext(SETTINGS.known, {'backend': 'osqp'}))
+    run = run_headless(SETTINGS, osqp)
+    difference = np.abs(usual.torque_request - run.torque_request).max()
     assert 0.0 < difference < 1e-2
-    assert np.abs(runs[0].slip_speed - runs[1].slip_speed).max() < 1e-3
+    assert np.abs(usual.slip_speed - run.slip_speed).max() < 1e-3
 
 
 def test_limits_of_the_request_hold_in_the_loop():
@@ -193,7 +190,7 @@ def test_limits_of_the_request_hold_in_the_loop():
 def test_the_first_reading_is_the_one_in_the_registry(readings_table):
     row = readings_table.rows[0]
     assert row[0] == 'mpc3'
-    assert row[2:5] == cells(TABLE_5_1, study_run(SETTINGS, 'mpc3'))
+    assert row[2:5] == cells(TABLE_5_1, thesis_run('mpc3', 'detailed', 1.0))
 
 
 def test_unit_delay_and_signals_decide_and_none_of_the_readings_is_the_print(readings_table):

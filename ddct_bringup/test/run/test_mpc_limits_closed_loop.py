@@ -2,8 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Limits of the predictive controllers in the loop: their priorities, and soft limits."""
 
+from functools import cache
+
 import numpy as np
 import pytest
+from samples import sampled
 from tight_tolerance import tight_tolerance_run
 
 from ddct_bringup.bag.trajectory import Trajectory
@@ -22,6 +25,7 @@ FULL_INFORMATION = ('measured=speeds', 'load_known=true', 'delay_in_model=true',
 ONE_INPUT = (*AS_DRAWN, 'mpc_preview', 'mpc_offset_free', 'mpc_torsion', 'mpc_wear')
 
 
+@cache
 def run(
     name: str, *options: str, changes: tuple[str, ...] = (), wear_gain: float = 1.0
 ) -> Trajectory:
@@ -40,7 +44,7 @@ def solver_states(trajectory: Trajectory) -> set[str]:
     return {dict(status)['qp_status'] for status in trajectory.status[START:]}
 
 
-@pytest.mark.parametrize('name', PREDICTIVE)
+@pytest.mark.parametrize('name', sampled(PREDICTIVE, every=2))
 def test_limits_that_contradict_each_other_at_control_start(name):
     """C_fOL is 271 N m there: down to 150 N m at 150 N m/s, and no solver is at a loss."""
     limited = run(name, 'highest_torque_n_m=150', 'torque_rate_n_m_s=150')
@@ -66,7 +70,7 @@ def test_the_rate_counts_from_the_request_to_the_actuator():
     assert solver_states(limited) == {'solved'}
 
 
-@pytest.mark.parametrize('name', ONE_INPUT)
+@pytest.mark.parametrize('name', sampled(ONE_INPUT, every=2))
 def test_the_plates_do_not_pass_each_other(name):
     """Free, the slip goes 2 to 7 rpm below zero; the soft limit leaves a tenth of an rpm."""
     told = with_full_information(name)
@@ -112,7 +116,7 @@ def test_a_limit_of_the_predicted_slip_is_as_good_as_the_prediction(name):
     assert solver_states(kept) == {'solved'}
 
 
-@pytest.mark.parametrize('name', PREDICTIVE)
+@pytest.mark.parametrize('name', sampled(PREDICTIVE, every=2))
 def test_a_lowest_slip_above_the_reference_is_kept_by_its_weight(name):
     """The limit keeps the slip up although the reference goes to zero."""
     kept = run(name, *with_full_information(name), 'lowest_slip_rpm=50')

@@ -2,16 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Offset-free and wear-compensating predictive control in the frozen scenario."""
 
+import itertools
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
+from samples import sampled
 from wrong_engine_torque import WrongEngineTorque
 
 from ddct_bringup.reproduction.studies.changed_loops import NoisySpeeds, slip_after_load_step
 from ddct_bringup.reproduction.studies.sweeps import torsion_weight
 from ddct_bringup.reproduction.studies.wear import LOAD_STEP_N_M, wear_estimate
-from ddct_bringup.reproduction.study_run import study_run
+from ddct_bringup.reproduction.study_run import thesis_run
 from ddct_bringup.run.headless import run_headless, run_loop
 from ddct_controllers.loop import ClosedLoop
 from ddct_controllers.mpc.estimate.observer import NoiseLevels
@@ -40,8 +43,14 @@ def settings(wear_gain=1.0, scenario=SCENARIO, architecture='detailed', **option
     )
 
 
-@pytest.mark.parametrize('wear_gain', [0.7, 1.3])
-@pytest.mark.parametrize('name', OWN)
+@cache
+def long_run(wear_gain):
+    return run_headless(settings(wear_gain, LONG, 'feedforward'), 'mpc_wear')
+
+
+@pytest.mark.parametrize(
+    ('wear_gain', 'name'), sampled(itertools.product([0.7, 1.3], OWN), every=2)
+)
 def test_it_stays_there(name, wear_gain):
     slip = run_headless(settings(wear_gain, LONG), name).slip_speed
     assert rpm_from_rad_s(np.abs(slip[-50:]).max()) < 0.15
@@ -56,23 +65,24 @@ def test_an_unknown_load_step_leaves_no_slip(name):
 
 @pytest.mark.parametrize(('name', 'least_rpm'), [('mpc3', 20.0), ('mpc_preview', 50.0)])
 def test_the_others_keep_an_error_of_each(name, least_rpm):
-    assert abs(study_run(settings(0.85), name).metrics['slip_final_rpm']) > 100.0
+    assert abs(thesis_run(name, 'detailed', 0.85).metrics['slip_final_rpm']) > 100.0
     run = settings()
     slip = slip_after_load_step(run, make_controller(name, run.known), LOAD_STEP_N_M, 150)
     assert abs(rpm_from_rad_s(slip[-1])) > least_rpm
 
 
 def test_with_a_new_clutch_they_engage_as_fast_as_mpc_preview():
-    fastest = study_run(settings(), 'mpc_preview').metrics['engagement_time_s']
+    fastest = thesis_run('mpc_preview', 'detailed', 1.0).metrics['engagement_time_s']
     for name in ('mpc_offset_free', 'mpc_wear'):
-        assert study_run(settings(), name).metrics['engagement_time_s'] == pytest.approx(
-            fastest, abs=1e-5
-        )
+        run = thesis_run(name, 'detailed', 1.0)
+        assert run.metrics['engagement_time_s'] == pytest.approx(fastest, abs=1e-5)
 
 
 def test_weighting_w_sr_lowers_it():
-    damped = study_run(settings(0.7), 'mpc_torsion').metrics['torsion_speed_std_rpm']
-    free = study_run(settings(0.7), 'mpc_offset_free').metrics['torsion_speed_std_rpm']
+    damped, free = (
+        thesis_run(name, 'detailed', 0.7).metrics['torsion_speed_std_rpm']
+        for name in ('mpc_torsion', 'mpc_offset_free')
+    )
     assert damped < 0.9 * free
 
 
@@ -88,7 +98,7 @@ def test_w_sr_falls_and_the_slip_error_grows_with_the_weight():
 
 @pytest.mark.parametrize('wear_gain', [0.7, 1.3])
 def test_the_wear_is_known_when_control_starts(wear_gain):
-    trajectory = run_headless(settings(wear_gain), 'mpc_wear')
+    trajectory = thesis_run('mpc_wear', 'detailed', wear_gain).trajectory
     status = dict(trajectory.status[SCENARIO.control_start_step])
     assert float(status['wear_gain_estimate']) == pytest.approx(wear_gain, abs=1e-3)
 
@@ -105,7 +115,7 @@ def test_the_estimate_of_wear_stays_right_with_noise_and_a_load_step():
 
 def test_with_feedback_from_the_start_wear_makes_no_difference_to_mpc_wear():
     new, *worn = (
-        run_headless(settings(gain, architecture='feedforward'), 'mpc_wear').slip_speed[60:]
+        thesis_run('mpc_wear', 'feedforward', gain).trajectory.slip_speed[60:]
         for gain in (1.0, 0.7, 1.3)
     )
     for slip in worn:
@@ -114,15 +124,14 @@ def test_with_feedback_from_the_start_wear_makes_no_difference_to_mpc_wear():
 
 @pytest.mark.parametrize('architecture', ARCHITECTURES)
 def test_they_work_in_every_architecture(architecture):
-    run = settings(0.7, architecture=architecture)
-    trajectory = run_headless(run, 'mpc_wear')
+    trajectory = thesis_run('mpc_wear', architecture, 0.7).trajectory
     assert dict(trajectory.status[-1])['fallbacks'] == '0'
     assert abs(rpm_from_rad_s(trajectory.slip_speed[-1])) <= 1.0
 
 
 @pytest.mark.parametrize('wear_gain', [0.4, 2.5])
 def test_the_slip_ends_at_zero_far_beyond_that(wear_gain):
-    slip = run_headless(settings(wear_gain, LONG, 'feedforward'), 'mpc_wear').slip_speed
+    slip = long_run(wear_gain).slip_speed
     assert rpm_from_rad_s(np.abs(slip[-50:]).max()) < 0.3
 
 
@@ -131,9 +140,7 @@ def test_the_status_reports_when_a_bound_holds_the_wear_gain(wear_gain):
     reached, estimates = np.transpose(
         [
             (status['wear_gain_at_bound'] == 'true', float(status['wear_gain_estimate']))
-            for status in map(
-                dict, run_headless(settings(wear_gain, LONG, 'feedforward'), 'mpc_wear').status
-            )
+            for status in map(dict, long_run(wear_gain).status)
         ]
     )
     assert np.any(reached)
@@ -195,7 +202,7 @@ def test_limits_are_those_of_the_request_whatever_the_wear(wear_gain):
 
 @pytest.mark.parametrize('name', OWN)
 def test_a_controller_that_has_run_repeats_its_run_to_the_last_bit(name):
-    run = settings(0.85)
+    run = settings(0.85, load_scenario('thesis', ['duration_s=1.2']))
     controller = NoisySpeeds(make_controller(name, run.known), 0.05, seed=1)
     first = run_headless(run, controller).sha256()
     controller.reset()

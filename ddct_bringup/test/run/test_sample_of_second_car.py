@@ -2,7 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """A sample of the runs with the second car; `tests/nightly/run` has all drives and controllers."""
 
+import itertools
+
 import pytest
+from samples import sampled
 from second_car import DRIVES, scored
 
 from ddct_bringup.verdict.state import ENGAGED
@@ -17,8 +20,10 @@ def test_there_are_ten_drives_for_every_car():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize('drive', SAMPLE)
-@pytest.mark.parametrize('controller', ['least_jerk', 'hinf_sampled', 'lqi'])
+@pytest.mark.parametrize(
+    ('drive', 'controller'),
+    sampled(itertools.product(SAMPLE, ['least_jerk', 'hinf_sampled', 'lqi']), every=2),
+)
 def test_controllers_that_suit_every_car_engage(drive, controller):
     run = scored(drive, controller)
     assert (run.valid, run.state) == (True, ENGAGED), run.why

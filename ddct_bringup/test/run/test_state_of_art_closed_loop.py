@@ -128,8 +128,10 @@ def test_the_engine_speed_follows_the_scenario(name):
     assert np.abs(run.slip_speed[-100:]).max() < 0.1
 
 
-@pytest.mark.parametrize('name', ['torque_estimator', 'decoupled_pid'])
-@pytest.mark.parametrize('wear_gain', [0.7, 1.0, 1.3])
+@pytest.mark.parametrize(
+    ('name', 'wear_gain'),
+    sampled(itertools.product(['torque_estimator', 'decoupled_pid'], [0.7, 1.0, 1.3]), every=2),
+)
 def test_beyond_the_engines_authority_the_clutch_takes_over(name, wear_gain):
     authority = [f'engine_authority.{key}={value}' for key, value in LITTLE_AUTHORITY.items()]
     _, run = trajectory(name, wear_gain, 'duration_s=6.0', *authority)

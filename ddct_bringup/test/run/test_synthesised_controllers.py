@@ -7,23 +7,17 @@ import pytest
 from tight_tolerance import tight_tolerance_run
 
 from ddct_bringup.metrics.metric import Metrics
-from ddct_bringup.metrics.values import compute_metrics
-from ddct_bringup.run.headless import run_headless
+from ddct_bringup.reproduction.study_run import thesis_run
 from ddct_bringup.thesis.table_5_1 import thesis_row
 from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 SCENARIO = load_scenario('thesis')
 
 
 def metrics(controller: str, wear_gain: float = 1.0) -> Metrics:
-    settings = RunSettings(KnownSettings(SCENARIO), CaseSettings(wear_gain=wear_gain))
-    return compute_metrics(
-        run_headless(settings, controller),
-        control_start_s=SCENARIO.control_start_s,
-        score_window_s=SCENARIO.score_window_s,
-    )
+    return thesis_run(controller, 'detailed', wear_gain).metrics
 
 
 @pytest.fixture(scope='module')
@@ -67,14 +61,14 @@ def test_its_figures_are_those_of_a_loop_that_scipy_integrates(integrated):
 
 def test_it_goes_through_zero_and_comes_back_as_far_as_scipy_finds(integrated):
     name, signals = integrated
-    lowest = run_headless(RunSettings(KnownSettings(SCENARIO)), name).slip_speed.min()
+    lowest = thesis_run(name, 'detailed', 1.0).trajectory.slip_speed.min()
     assert lowest == pytest.approx(signals['w_d'].min(), rel=2e-3)
 
 
 def test_it_goes_further_through_zero_than_hinf1():
     """A slower, smoother loop goes further through zero."""
     sampled, hinf1 = (
-        run_headless(RunSettings(KnownSettings(SCENARIO)), name).slip_speed.min()
+        thesis_run(name, 'detailed', 1.0).trajectory.slip_speed.min()
         for name in ('hinf_sampled', 'hinf1')
     )
     assert sampled < 1.3 * hinf1 < 0.0
