@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from drawn_here import draw_here
 from support.processes import TEST_ID, Programs, note_processes, processes_left
 
 from ddct_bringup.processes.shared_memory import remove_dead_segments
@@ -42,6 +43,14 @@ def pytest_itemcollected(item: pytest.Item) -> None:
     folder = item.path.relative_to(HERE).parts[0]
     if folder in MARKERS:
         item.add_marker(MARKERS[folder])
+
+
+@pytest.fixture(scope='session', autouse=True)
+def drawn_here() -> Iterator[None]:
+    """Let no `compare` in this process start another one, which would import what draws anew."""
+    with pytest.MonkeyPatch.context() as patch:
+        draw_here(patch)
+        yield
 
 
 @pytest.fixture(autouse=True)

@@ -40,7 +40,7 @@ codes, refused = {}, {}
 for line in sys.argv[1].splitlines():
     sys.argv[1:] = line.split()
     codes[line] = main()
-swept = sweep([Mine], {'wear_gain': [0.9, 1.1]}, duration=0.3)
+swept = sweep([Mine], {'wear_gain': [0.9, 1.1]}, duration=0.3, workers=1)
 for package in ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup'):
     found = importlib.import_module(package)
     for module in pkgutil.walk_packages(found.__path__, f'{package}.'):
@@ -53,7 +53,7 @@ with open('outcome.json', 'w') as file:
 """
 COMPARE = 'compare --controllers pi --headless --duration 2 --out runs'
 SPEC = 'controllers: [pi]\nscenario: thesis\ngrid: {wear_gain: [0.9, 1.1], duration_s: [0.3]}\n'
-CAMPAIGN = 'campaign wear.yaml --workers 2 --out'
+CAMPAIGN = 'campaign wear.yaml --workers 1 --out'
 IDENTIFY = 'identify --from runs/pi --hold-out 0.3 --out mycar'
 GRAPH = 'compare --controllers pi --out graph'
 

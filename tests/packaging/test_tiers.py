@@ -27,6 +27,7 @@ def run(tmp_path: Path) -> Run:
     (tmp_path / 'pyproject.toml').write_text(
         '[tool.pytest.ini_options]\nmarkers = ["slow"]\naddopts = "-p tiers -p no:cacheprovider"\n'
     )
+    (tmp_path / 'conftest.py').write_text('import tiers\n\ntiers.MOST_S = 0.2\n')
 
     def carry_out(texts: dict[str, str], *options: str) -> str:
         for name, text in texts.items():
@@ -57,9 +58,9 @@ EXCLUDED = {
     'clock': 'import time\ndef test_a(): time.monotonic()\n',
     'bound_clock': 'from time import time\ndef test_a(): time()\n',
     'long': (
-        'import time\n'
+        'import tiers, time\n'
         'def test_a():\n'
-        '    end_s = time.process_time() + 1.01\n'
+        '    end_s = time.process_time() + tiers.MOST_S + 0.01\n'
         '    while time.process_time() < end_s: pass\n'
     ),
 }

@@ -36,11 +36,8 @@ def diffs(title: str) -> list[str]:
 def apply(title: str, tree: Path) -> dict[str, str]:
     """Apply the diffs of a section to a copy of the sources; return the environment to run it."""
     for package in PACKAGES:
-        shutil.copytree(
-            ROOT / package / package,
-            tree / package / package,
-            ignore=shutil.ignore_patterns('__pycache__'),
-        )
+        # With what Python has compiled of them.
+        shutil.copytree(ROOT / package / package, tree / package / package)
     (diff,) = diffs(title)
     # Outside of a repository `git apply` changes the files below the working directory.
     environment = {**os.environ, 'GIT_CEILING_DIRECTORIES': str(tree.parent)}

@@ -186,7 +186,8 @@ def note_processes() -> None:
 
 
 def _all_processes() -> list[int]:
-    return [int(each.name) for each in Path('/proc').iterdir() if each.name.isdigit()]
+    with os.scandir('/proc') as entries:
+        return [int(entry.name) for entry in entries if entry.name.isdigit()]
 
 
 def processes_left() -> dict[int, str]:

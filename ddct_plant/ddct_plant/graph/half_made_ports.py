@@ -8,6 +8,7 @@ complete survive the death of their owners.
 """
 
 import contextlib
+import os
 import struct
 import time
 from pathlib import Path
@@ -29,9 +30,11 @@ def remove_half_made_ports(domain: int) -> None:
     first = _BASE + _PER_DOMAIN * domain
     numbers = (*_OF_ALL_DOMAINS, *range(first, first + _PER_DOMAIN))
     names = {f'fastrtps_port{number}' for number in numbers}
-    for port in SHARED_MEMORY.glob('fastrtps_port*'):
-        if port.name not in names:
-            continue
+    found: set[str] = set()
+    # Not by glob: there may be a thousand files, and each node looks at its start.
+    with contextlib.suppress(FileNotFoundError), os.scandir(SHARED_MEMORY) as entries:
+        found = {entry.name for entry in entries}
+    for port in map(SHARED_MEMORY.joinpath, names & found):
         # Its maker may remove it meanwhile, or be another user.
         with contextlib.suppress(OSError):
             while not _is_complete(port):
