@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Gaps between development and held-out cases, by ranks within scenarios."""
 
+import itertools
 from statistics import NormalDist
 
 import numpy as np
 import pytest
 import scipy
 from made_benchmarks import IN_SCENARIO, MadeBenchmark, flagged_draws
+from samples import sampled
 
 from ddct_bringup.evaluation.case_figures import FIGURES, CaseFigures
 from ddct_bringup.evaluation.held_out_gaps import gaps_of, van_elteren
@@ -64,8 +66,12 @@ def test_one_stratum_with_ties_is_the_mann_whitney_test() -> None:
         assert worse == pytest.approx(expected.statistic / (17 * 11))
 
 
-@pytest.mark.parametrize('sizes', [[(30, 30)] * 11, [(3, 3)] * 11, [(12, 5), (7, 9), (20, 8)]])
-@pytest.mark.parametrize('failing', [0.0, 0.2])
+SIZES = [[(30, 30)] * 11, [(3, 3)] * 11, [(12, 5), (7, 9), (20, 8)]]
+
+
+@pytest.mark.parametrize(
+    ('failing', 'sizes'), sampled(itertools.product([0.0, 0.2], SIZES), every=2)
+)
 def test_the_p_value_is_that_of_permutations_within_strata(
     sizes: list[tuple[int, int]], failing: float
 ) -> None:

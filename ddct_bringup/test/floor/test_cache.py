@@ -8,6 +8,7 @@ from ddct_bringup.floor.cache import KnownFloor, cached, store
 from ddct_bringup.floor.values import Floor, Proof
 from ddct_plant.files.cache_folder import cache_folder
 
+pytestmark = pytest.mark.usefixtures('own_cache')
 NAME = 'abc'
 FLOOR = Floor('peak_jerk', 0.8, 1.0 / 3.0, None, Proof('ray', 1.0, 'all'), None)
 VALUES = KnownFloor(FLOOR, limited=False)

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Floors contain the runs that they are compared with, and are attained by runs of the plant."""
 
+from functools import cache
 from importlib.resources import files
 
 import numpy as np
@@ -52,19 +53,24 @@ def settings_of(scenario='launch', **further):
     return RunSettings.of(load_scenario(scenario), further)
 
 
-@pytest.mark.parametrize(
-    ('scenario', 'controller', 'changes'),
-    [
-        *((*run, {}) for run in RUNS),
-        # Clipped, and the kiss point of the warm facing leaves a rest of the capacity.
-        ('launch_gentle', 'mpc3', {'friction.kiss_drift_n_m_k': -0.05}),
-    ],
-)
-def test_a_run_is_a_point_of_the_program_that_bounds_it(scenario, controller, changes):
-    settings = RunSettings.of(load_scenario(scenario, changes), {})
+@cache
+def case_and_run(scenario, controller, *overrides):
+    settings = RunSettings.of(load_scenario(scenario, overrides), {})
     run = run_headless(settings, controller)
     start = control_start(settings)
-    case = case_of_run(settings, start, lock_of(run, start.step, RULES), run)
+    return case_of_run(settings, start, lock_of(run, start.step, RULES), run), run
+
+
+@pytest.mark.parametrize(
+    ('scenario', 'controller', 'overrides'),
+    [
+        *((*run, ()) for run in RUNS),
+        # Clipped, and the kiss point of the warm facing leaves a rest of the capacity.
+        ('launch_gentle', 'mpc3', ('friction.kiss_drift_n_m_k=-0.05',)),
+    ],
+)
+def test_a_run_is_a_point_of_the_program_that_bounds_it(scenario, controller, overrides):
+    case, run = case_and_run(scenario, controller, *overrides)
     point = point_of(case, run)
     assert np.abs(case.motion.acceleration @ point - run.vehicle_accel).max() < 1e-10
     assert np.abs(case.motion.torsion_speed @ point - run.driveshaft_speed).max() < 1e-10
@@ -78,10 +84,7 @@ def test_a_run_is_a_point_of_the_program_that_bounds_it(scenario, controller, ch
 def test_the_cases_of_the_sample_differ_in_what_is_variable():
     found = {}
     for scenario, controller in RUNS[:3]:
-        settings = settings_of(scenario)
-        run = run_headless(settings, controller)
-        start = control_start(settings)
-        case = case_of_run(settings, start, lock_of(run, start.step, RULES), run)
+        case, _ = case_and_run(scenario, controller)
         found[scenario] = (case.limited, bool(case.capacity.clipped))
     assert found == {
         'launch': (False, False),
@@ -100,6 +103,7 @@ def test_no_metric_of_a_run_is_below_its_floor(scenario, controller):
         assert over.value >= over.floor.least, metric
 
 
+@pytest.mark.usefixtures('own_cache')
 def test_no_run_near_a_least_of_zero_is_searched_for(monkeypatch):
     monkeypatch.setattr(computed_floor, 'replays_of', None)
     floor = floor_of(settings_of(), OF_STICK_SLIP, 1.0)
@@ -138,7 +142,7 @@ def test_the_least_peak_jerk_is_nearly_attained_by_a_run_that_locks_then(scenari
     assert floor.certificate.covers == (LIMITS if gap == 25.0 else DEMAND)
 
 
-@pytest.mark.parametrize('wear_gain', [0.7, 1.3])
+@pytest.mark.parametrize('wear_gain', sampled([0.7, 1.3], every=2))
 def test_a_worn_clutch_has_the_same_floor_as_its_requests_are_free(wear_gain):
     """The start differs, as C_fOL is always on, so a floor moves a little."""
     floor = floor_of(settings_of(wear_gain=wear_gain), 'peak_jerk', 1.1)
@@ -146,6 +150,7 @@ def test_a_worn_clutch_has_the_same_floor_as_its_requests_are_free(wear_gain):
     assert floor.gap < 5.0
 
 
+@pytest.mark.usefixtures('own_cache')
 def test_after_a_replay_that_does_not_lock_as_the_floor_has_it_another_one_does(monkeypatch):
     """Its slip closes faster at last."""
     lock, locks = attained._locks, []
@@ -160,6 +165,7 @@ def test_after_a_replay_that_does_not_lock_as_the_floor_has_it_another_one_does(
     assert floor.attained >= floor.least
 
 
+@pytest.mark.usefixtures('own_cache')
 def test_after_two_replays_that_do_not_lock_as_the_floor_has_it_there_is_no_third(monkeypatch):
     replays = []
 
@@ -229,6 +235,7 @@ def changed_plant(package):
     return files('ddct_reference' if package == 'ddct_plant' else package)
 
 
+@pytest.mark.usefixtures('own_cache')
 @pytest.mark.parametrize(('named', 'expected'), [(None, 1), ('2', 2)])
 def test_a_floor_is_computed_by_one_thread_unless_the_user_wants_more(
     monkeypatch, named, expected
@@ -262,7 +269,7 @@ def test_a_lock_at_once_is_impossible_and_has_its_ray():
     assert floor.certificate.proven > 0.0
 
 
-@pytest.mark.parametrize('metric', ['peak_jerk', 'acceleration_std_m_s2'])
+@pytest.mark.parametrize('metric', sampled(['peak_jerk', 'acceleration_std_m_s2'], every=2))
 def test_a_lock_before_any_request_acts_leaves_nothing_to_choose(metric):
     floor = floor_of(settings_of(), metric, 0.005)
     assert (floor.least, floor.attained) == (None, None)

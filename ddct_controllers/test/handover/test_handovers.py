@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The handovers of a shift: ramps, the torque balance, slip under feedback, and the torque cut."""
 
+import itertools
 from dataclasses import replace
 from typing import Any
 
@@ -9,6 +10,7 @@ import pytest
 from handed_over import flare, shift, tie_up_work
 from other_actuators import ACTUATORS, SLOW
 from refusals import refused
+from samples import sampled
 from shifts import HANDOVER_S, shift_settings
 
 from ddct_controllers.handover.interface import (
@@ -54,9 +56,10 @@ def test_before_the_shift_the_off_going_clutch_stays_locked(name):
     )
 
 
-@pytest.mark.parametrize('name', HANDOVERS)
-@pytest.mark.parametrize('scenario', COLD)
-@pytest.mark.parametrize('wear_gain', [0.8, 1.2])
+@pytest.mark.parametrize(
+    ('wear_gain', 'scenario', 'name'),
+    sampled(itertools.product([0.8, 1.2], COLD, HANDOVERS), every=3),
+)
 def test_after_the_handover_the_share_is_one_and_the_off_going_clutch_opens(
     name, scenario, wear_gain
 ):
@@ -111,8 +114,9 @@ def test_the_slip_handover_keeps_the_clutch_at_its_slip_while_it_carries_torque(
     assert min(slips) > 2.0
 
 
-@pytest.mark.parametrize('name', HANDOVERS)
-@pytest.mark.parametrize('actuator', ACTUATORS.values(), ids=ACTUATORS)
+@pytest.mark.parametrize(
+    ('actuator', 'name'), sampled(itertools.product(ACTUATORS.values(), HANDOVERS), every=3)
+)
 def test_with_every_actuator_that_it_knows_a_handover_neither_flares_nor_ties_up(actuator, name):
     ticks = shift(with_actuator('upshift', actuator), name)
     assert flare(ticks) < 9.0

@@ -5,6 +5,7 @@
 import dataclasses
 import math
 from collections.abc import Mapping
+from functools import cache
 
 import numpy as np
 
@@ -124,12 +125,16 @@ def deviation_bound_percent() -> float:
 
 def plant_slips(plants: Mapping[str, SimplifiedPlant]) -> dict[str, np.ndarray]:
     """Return w_d in rad/s of each model under the torques of the PI's run, (N+1,)."""
+    return {name: _slip(plant) for name, plant in plants.items()}
+
+
+@cache
+def _slip(plant: SimplifiedPlant) -> np.ndarray:
     run = thesis_run('pi', 'detailed', 1.0).trajectory
     states = run.engine_speed, run.primary_shaft_speed, run.wheel_speed, run.driveshaft_position
     start = np.array([each[0] for each in states])
     torques = run.engine_torque[:-1], run.clutch_torque[:-1], run.load_torque[:-1]
-    phase = SlipPhase(*torques, start)
-    return {name: plant(THESIS_SCENARIO.driveline, phase) for name, plant in plants.items()}
+    return plant(THESIS_SCENARIO.driveline, SlipPhase(*torques, start))
 
 
 def deviations(plants: Mapping[str, SimplifiedPlant]) -> dict[str, float]:

@@ -21,7 +21,6 @@ from ddct_bringup.reproduction.study_run import (
     study_run,
     thesis_run,
 )
-from ddct_bringup.run.headless import run_headless
 from ddct_bringup.thesis.table_5_1 import thesis_row
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.file import load_scenario
@@ -59,7 +58,7 @@ def lines(axes: 'Axes') -> dict[str, np.ndarray]:
 )
 def test_run_figure_contains_the_signal_of_the_run_from_0_5_s(number, architecture, shown, unit):
     axes = drawing(number)[0].axes[0]
-    run = run_headless(RunSettings(KnownSettings(THESIS_SCENARIO, architecture)), shown[0])
+    run = thesis_run(shown[0], architecture, 1.0).trajectory
     signals = {
         'w_d, rpm': rpm_from_rad_s(run.slip_speed),
         'w_sr, rpm': rpm_from_rad_s(run.joint_speed[:, 3]),
@@ -76,12 +75,7 @@ def test_wear_figure_shows_hinf2_at_both_ends_of_the_wear():
     chart, _ = drawing('5.1')
     shown = lines(chart.axes[0])
     for wear in (0.7, 1.3):
-        run = run_headless(
-            RunSettings(
-                KnownSettings(THESIS_SCENARIO, 'feedforward'), CaseSettings(wear_gain=wear)
-            ),
-            'hinf2',
-        )
+        run = thesis_run('hinf2', 'feedforward', wear).trajectory
         label = f'H∞2 (K_usura = {wear:g})'
         np.testing.assert_array_equal(shown[label][1], rpm_from_rad_s(run.slip_speed[50:]))
         assert abs(shown[label][1][-1]) < 1.0
@@ -176,7 +170,7 @@ def test_remarks_distinguish_fitted_and_predicted_rows_of_table_5_1():
 
 def test_reference_figure_is_what_the_detailed_run_follows_once_control_starts():
     time, values = lines(drawing('1.12')[0].axes[0])['reference']
-    run = run_headless(RunSettings(KnownSettings(THESIS_SCENARIO)), 'pi')
+    run = thesis_run('pi', 'detailed', 1.0).trajectory
     np.testing.assert_array_equal(values, rpm_from_rad_s(run.slip_reference[: len(time), 0]))
 
 

@@ -247,7 +247,7 @@ def test_command_refuses_controllers_that_cannot_be_drawn(
 
 def test_command_replaces_figures_only_with_the_option(tmp_path, refusal):
     arguments = ('--out', tmp_path, '--only', '2.2')
-    run_command(*arguments)
+    (tmp_path / 'figure_2_2.png').touch()
     assert re.search(r'figure_2_2.png exists: .* add --overwrite', refusal(*arguments))
     assert run_command(*arguments, '--overwrite') == 0
 

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Results of `design h-infinity` as a record for JSON and tables."""
 
+from functools import cache
+
 from ddct_controllers.design.analysis.loops import (
     IDENTIFIED_DRIVELINE,
     ContinuousLoop,
@@ -179,10 +181,11 @@ def loop_record(
     )
 
 
+@cache
 def uncertainty_record(
     parameters: DrivelineParameters = IDENTIFIED_DRIVELINE,
 ) -> UncertaintyRecord:
-    """Return the fitted and the printed W_u, and the shortfall of the printed one."""
+    """Return the fitted and the printed W_u, and the shortfall of the printed one, kept by car."""
     error = relative_error(plant_in_rpm(parameters), wear_family(parameters), OMEGA)
     largest = float(error.max())
     printed = abs(PRINTED_W_U.frequency_response(OMEGA))

@@ -77,7 +77,9 @@ def test_peaks_and_bandwidth_of_a_second_order_loop_in_closed_form():
     assert margins.gain_margin_db == math.inf
 
 
-@pytest.mark.parametrize('name', ['ls8', 'hinf2', pytest.param('ls3', marks=pytest.mark.nightly)])
+@pytest.mark.parametrize(
+    'name', ['ls8', *(pytest.param(name, marks=pytest.mark.nightly) for name in ('hinf2', 'ls3'))]
+)
 def test_they_are_those_of_python_control(name):
     """python-control interpolates between 3000 points; its disk margin is the least of theirs."""
     import control
