@@ -7,7 +7,7 @@ import re
 import sys
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ddct_plant.program.printed_table import print_note, print_table
@@ -16,6 +16,8 @@ from ddct_plant.program.table import TextColumn, TextTable, Weight, table_of, wi
 WORDS = st.text('abcdefgh', min_size=1, max_size=40)
 TEXTS = st.lists(WORDS, min_size=1, max_size=6).map(' '.join)
 NUMBERS = st.integers(-(10**9), 10**9).map(str)
+EXAMPLES = 40
+"""Number of tables of a test, of which each takes milliseconds to print."""
 
 
 @st.composite
@@ -62,6 +64,7 @@ def table_lines(table: TextTable, width: int) -> list[tuple[str, bool]]:
     return [(re.sub(r'\x1b\[[0-9;]*m', '', line).rstrip(), '\x1b[1m' in line) for line in lines]
 
 
+@settings(max_examples=EXAMPLES)
 @given(tables(), st.integers(40, 200))
 def test_no_line_is_wider_and_each_column_is_shown_or_named(table: TextTable, width: int) -> None:
     lines = table_lines(table, width)
@@ -84,6 +87,7 @@ def test_no_line_is_wider_and_each_column_is_shown_or_named(table: TextTable, wi
     assert set(letters) <= repeated
 
 
+@settings(max_examples=EXAMPLES)
 @given(tables())
 def test_a_wide_output_shows_every_column_without_a_wrapped_line(table: TextTable) -> None:
     headings = [line for line, is_heading in table_lines(table, 10**4) if is_heading]
