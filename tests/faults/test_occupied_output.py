@@ -126,12 +126,12 @@ def test_a_failed_run_keeps_the_earlier_result(
     targets = {'fragile': 'support.broken_controllers:make_not_a_number'}
     install(monkeypatch, tmp_path / 'site', Path(__file__).parent.parent, targets)
     out = tmp_path / 'runs'
-    fragile = ['--controller', 'fragile', '--single-process', '--duration', '0.8']
-    good = ['--set', 'controllers.fragile.good_until_step=1000']
+    fragile = ['--controller', 'fragile', '--duration', '0.8']
+    good = ['--headless', '--set', 'controllers.fragile.good_until_step=1000']
     assert _run(out, *fragile, *good) == 0
     before = _snapshot(out / 'fragile')
     capfd.readouterr()
-    assert _run(out, *fragile, '--overwrite') == 1
+    assert _run(out, *fragile, '--single-process', '--overwrite') == 1
     assert_one_line(capfd.readouterr().err, 'bringup', 'step 60 is nan')
     assert _snapshot(out / 'fragile') == before
     assert (out / 'fragile.partial' / 'fragile_0.mcap').is_file(), 'what it recorded is kept'

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 from rclpy.node import Node
+from samples import sampled
 from support.altering import Repeating, add_altering
 from support.in_process_graph import GraphOf, InProcessGraph
 from support.processes import Programs
@@ -87,7 +88,8 @@ def test_a_second_copy_of_any_node_ends_the_run_with_its_name(
 
 
 @pytest.mark.parametrize(
-    ('name', 'changes'), [('controller', {'controller': 'pi'}), ('clutch', {}), ('load', {})]
+    ('name', 'changes'),
+    sampled([('controller', {'controller': 'pi'}), ('load', {}), ('clutch', {})], every=3),
 )
 def test_in_real_time_a_second_publisher_opens_the_clutch_before_it_is_named(
     graph_of: GraphOf, name: str, changes: dict[str, str], capfd: pytest.CaptureFixture[str]
@@ -120,7 +122,7 @@ def test_a_killed_node_that_is_still_in_the_graph_is_no_second_publisher(
     assert read_bag(graph.folder).trajectory.sha256() == expected(run).sha256()
 
 
-@pytest.mark.parametrize('away_s', [0.03, 1.5, 4.9])
+@pytest.mark.parametrize('away_s', sampled([0.03, 1.5, 4.9], every=2))
 def test_a_node_that_is_killed_and_started_again_in_real_time_is_no_second_publisher(
     graph_of: GraphOf, away_s: float
 ) -> None:

@@ -2,60 +2,71 @@
 # SPDX-License-Identifier: Apache-2.0
 """`live` prints one line and ends with its exit code when it cannot serve or is stopped."""
 
+import os
 import socket
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
 import pytest
 from support.complaints import assert_one_line
-from support.processes import Program, Programs
+from support.processes import Program
+
+from ddct_bringup.programs import live as live_program
 
 Start = Callable[..., tuple[Program, str]]
-LIVE = 'ddct_bringup.programs.live'
 
 
-def test_a_taken_port_is_named(extras: None, programs: Programs) -> None:
+@pytest.fixture
+def refuses(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> Callable[..., None]:
+    """Return a function that requires `live` to refuse arguments in one line with these words."""
+    monkeypatch.setattr(os, 'nice', lambda _: 0)
+
+    def require(arguments: Sequence[str], *words: str) -> None:
+        assert live_program.main([*arguments]) == 1
+        printed = capfd.readouterr()
+        assert_one_line(printed.err, 'ddct live', *words)
+        assert not printed.out
+
+    return require
+
+
+def test_a_taken_port_is_named(extras: None, refuses: Callable[..., None]) -> None:
     with socket.create_server(('127.0.0.1', 0)) as taken:
         port = str(taken.getsockname()[1])
-        program = programs.start_module(LIVE, '--port', port)
-        assert program.wait() == 1
-    assert_one_line(program.errors(), 'ddct live', f'port {port}', 'in use', '--port')
-    assert not program.output()
+        refuses(['--port', port], f'port {port}', 'in use', '--port')
 
 
-def test_a_host_that_is_not_there_is_named(extras: None, programs: Programs) -> None:
-    program = programs.start_module(LIVE, '--port', '0', '--host', 'no-such-host.invalid')
-    assert program.wait() == 1
-    assert_one_line(program.errors(), 'ddct live', 'no-such-host.invalid', '--host')
+def test_a_host_that_is_not_there_is_named(extras: None, refuses: Callable[..., None]) -> None:
+    host = 'no-such-host.invalid'
+    refuses(['--port', '0', '--host', host], host, '--host')
 
 
 @pytest.mark.parametrize('port', ['-1', '65536'])
-def test_a_port_out_of_range_is_named(programs: Programs, port: str) -> None:
-    program = programs.start_module(LIVE, '--port', port)
-    assert program.wait() == 1
-    assert_one_line(program.errors(), 'ddct live', f'--port is {port}', '65535')
+def test_a_port_out_of_range_is_named(refuses: Callable[..., None], port: str) -> None:
+    refuses(['--port', port], f'--port is {port}', '65535')
 
 
 def test_without_the_extra_it_names_what_to_install(
-    programs: Programs, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    refuses: Callable[..., None], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / 'foxglove.py').write_text('raise ImportError("No module named foxglove")')
-    monkeypatch.setenv('PYTHONPATH', str(tmp_path), prepend=':')
-    program = programs.start_module(LIVE, '--port', '0')
-    assert program.wait() == 1
-    assert_one_line(program.errors(), 'ddct live', 'foxglove-sdk', 'pip install foxglove-sdk')
+    monkeypatch.setitem(sys.modules, 'foxglove', None)
+    refuses(['--port', '0'], 'foxglove-sdk', 'pip install foxglove-sdk')
 
 
 @pytest.mark.parametrize(
     ('arguments', 'address'), [((), '127.0.0.1'), (('--host', '0.0.0.0'), '0.0.0.0')]
 )
-def test_it_listens_on_this_machine_alone_unless_the_user_names_another_address(
+def test_it_listens_on_this_machine_alone_unless_the_user_names_another_and_ends_when_stopped(
     live: Start, arguments: tuple[str, ...], address: str
 ) -> None:
     program, url = live(*arguments)
     found = listening(program.process.pid)
     program.stop()
+    assert not program.errors()
     assert found == {(address, int(url.rpartition(':')[2]))}
 
 
@@ -75,13 +86,8 @@ def listening(pid: int) -> set[tuple[str, int]]:
     return found
 
 
-def test_it_ends_with_code_0_when_stopped(live: Start) -> None:
-    program, _ = live()
-    program.stop()
-    assert not program.errors()
-
-
-def test_help_ends_with_code_0(programs: Programs) -> None:
-    program = programs.start_module(LIVE, '--help')
-    assert program.wait() == 0
-    assert 'Foxglove' in program.output()
+def test_help_ends_with_code_0(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        live_program.main(['--help'])
+    assert ended.value.code == 0
+    assert 'Foxglove' in capsys.readouterr().out
