@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 import yaml
 from by_schema import require_schema
+from shown_tables import require_reasons, require_whole_lines
 
 from ddct_bringup.programs import thesis
 from ddct_bringup.reproduction.numbers import command
@@ -202,6 +203,8 @@ def test_program_prints_the_tables_of_chapters_without_reasons(
     printed = capsys.readouterr().out
     assert 'Errata of the thesis' in printed and 'distinct facts' in printed
     assert not [line for line in printed.splitlines() if line.endswith(' reason')]
+    require_whole_lines(printed.splitlines(), 120)
+    require_reasons(printed.splitlines())
 
 
 def test_section_shows_one_table_with_the_reasons_of_its_misses_and_json_has_its_numbers_alone(

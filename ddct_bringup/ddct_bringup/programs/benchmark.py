@@ -137,10 +137,11 @@ def _show_packaged(options: argparse.Namespace) -> int:
         or options.seed is not None
     ):
         raise ParameterError('--packaged runs nothing: give it alone, or with --json')
+    tables = shell.packaged_tables()
     show_and_write(
         options.json,
-        shell.packaged_written(),
-        lambda: shell.print_document(shell.packaged_document()),
+        shell.packaged_written(tables),
+        lambda: shell.print_document(shell.packaged_document(tables)),
     )
     return 0
 

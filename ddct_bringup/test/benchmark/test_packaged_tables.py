@@ -93,7 +93,7 @@ def test_the_program_writes_the_tables(capsys: pytest.CaptureFixture[str]) -> No
     assert benchmark.main(['--packaged', '--json', '-']) == 0
     written = json.loads(capsys.readouterr().out)
     require_schema('benchmark_packaged', written)
-    assert written == to_json(packaged_written())
+    assert written == to_json(packaged_written(tables))
     for name, table in tables.items():
         assert [list(row.values()) for row in written[name]['rows']] == [
             [*row] for row in text_table(table).rows

@@ -2,18 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """The packaged cases cover what they should, and the packaged rows come out again."""
 
+import io
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 import pytest
+from shown_tables import require_reasons, require_whole_lines
 from small_benchmark import shown_runs
 
 from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.release import ReleaseRows, columns_kept, release_rows
-from ddct_bringup.benchmark.report.packaged import packaged_tables
+from ddct_bringup.benchmark.report.packaged import packaged_document, packaged_tables
 from ddct_bringup.campaign.columns import runs_table, schema_of
 from ddct_bringup.campaign.scored import Scorer
-from ddct_bringup.documents.terminal import text_table
+from ddct_bringup.documents.document import Table
+from ddct_bringup.documents.terminal import print_document, text_table
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verification.comparison import Comparison, plain_json
 from ddct_controllers.registry import own_controller_names
@@ -90,11 +94,28 @@ def test_a_sample_of_the_rows_comes_out_again_within_the_bound(release: ReleaseR
     assert comparison.beyond is None
 
 
-def test_every_controller_of_the_release_stands_in_every_table_with_all_its_runs() -> None:
-    for name, found in packaged_tables().items():
+@pytest.fixture(scope='module')
+def tables() -> Mapping[str, Table]:
+    return packaged_tables()
+
+
+def test_every_controller_of_the_release_stands_in_every_table_with_all_its_runs(
+    tables: Mapping[str, Table],
+) -> None:
+    for name, found in tables.items():
         table = text_table(found)
         controllers = list(dict.fromkeys(row[0] for row in table.rows))
         assert controllers == own_controller_names()
         if 'engaged' in table.headers:
             among = 330 if name == 'all' else 30
             assert {shown_runs(table, row) for row in range(len(controllers))} == {among}
+
+
+def test_the_tables_of_the_release_fit_a_file_with_a_reason_for_each_dash(
+    tables: Mapping[str, Table],
+) -> None:
+    stream = io.StringIO()
+    print_document(packaged_document(tables), stream)
+    lines = stream.getvalue().splitlines()
+    require_whole_lines(lines, 120)
+    require_reasons(lines)

@@ -10,6 +10,7 @@ from functools import cache
 
 import pytest
 from made_results import made_results
+from shown_tables import require_reasons, require_whole_lines
 
 from ddct_bringup.campaign_report.document import campaign_document
 from ddct_bringup.documents.terminal import print_document
@@ -59,7 +60,13 @@ PROGRAMS: dict[str, Callable[[], object]] = {
 }
 
 LONG = ('benchmark --packaged', 'thesis numbers')
-"""Programs that take a second."""
+"""
+Programs that take a second: nightly here.
+
+What they print into a file is checked by tests that have computed it: test_release_rows.py and
+test_thesis_gate.py.
+"""
+EACH = [pytest.param(name, marks=[pytest.mark.nightly] * (name in LONG)) for name in PROGRAMS]
 
 
 @cache
@@ -75,19 +82,10 @@ def _shown(name: str, *, is_terminal: bool) -> Sequence[str]:
 
 
 @pytest.mark.process
-@pytest.mark.parametrize(
-    ('name', 'is_terminal', 'width'),
-    [
-        *((name, False, 120) for name in PROGRAMS),
-        *((name, True, 80) for name in PROGRAMS if name not in LONG),
-        *(pytest.param(name, True, 80, marks=pytest.mark.nightly) for name in LONG),
-    ],
-)
+@pytest.mark.parametrize(('is_terminal', 'width'), [(False, 120), (True, 80)])
+@pytest.mark.parametrize('name', EACH)
 def test_no_line_is_too_wide_and_no_cell_is_cut(name: str, width: int, is_terminal: bool) -> None:
-    lines = _shown(name, is_terminal=is_terminal)
-    assert lines
-    assert [line for line in lines if len(line) > width] == []
-    assert [line for line in lines if '…' in line or '...' in line] == []
+    require_whole_lines(_shown(name, is_terminal=is_terminal), width)
 
 
 def test_a_campaign_names_the_option_that_has_all_columns() -> None:
@@ -96,11 +94,6 @@ def test_a_campaign_names_the_option_that_has_all_columns() -> None:
 
 
 @pytest.mark.process
-@pytest.mark.parametrize('name', PROGRAMS)
+@pytest.mark.parametrize('name', EACH)
 def test_each_dash_has_a_reason_below_its_table(name: str) -> None:
-    for table in '\n'.join(_shown(name, is_terminal=False)).split('\n\n'):
-        cells = {cell for line in table.splitlines() for cell in re.split('  +', line.strip())}
-        notes = [line for line in table.splitlines() if re.match(r'  (-+|\*+)  ', line)]
-        dashes = {cell for cell in cells if re.fullmatch('-+', cell)}
-        assert {note.split()[0] for note in notes} >= dashes, table
-        assert len(notes) <= 6
+    require_reasons(_shown(name, is_terminal=False))

@@ -26,7 +26,11 @@ if TYPE_CHECKING:
     from ddct_bringup.benchmark.judged import Judged
     from ddct_bringup.benchmark.report.document import benchmark_document
     from ddct_bringup.benchmark.report.folder import document_of
-    from ddct_bringup.benchmark.report.packaged import packaged_document, packaged_written
+    from ddct_bringup.benchmark.report.packaged import (
+        packaged_document,
+        packaged_tables,
+        packaged_written,
+    )
     from ddct_bringup.benchmark.result_types import Result
     from ddct_bringup.benchmark.update_times import read_update_times
     from ddct_bringup.campaign.arrow_columns import table_csv

@@ -46,19 +46,19 @@ _OF_FIGURES = (
 )
 
 
-def packaged_document() -> Document:
-    """Return the document of the packaged controllers: their tables, and the rules below."""
+def packaged_document(tables: Mapping[str, Table]) -> Document:
+    """Return the document of `packaged_tables`: the tables, and the rules below."""
     return Document(
         'Benchmark',
         'The packaged controllers',
         'From the rows of the release',
-        [*packaged_tables().values(), *map(Note, packaged_lines())],
+        [*tables.values(), *map(Note, packaged_lines())],
     )
 
 
-def packaged_written() -> Mapping[str, WrittenTable]:
-    """Return what `--packaged --json` writes: the tables by name, their cells as texts."""
-    return {name: text_table(table).written for name, table in packaged_tables().items()}
+def packaged_written(tables: Mapping[str, Table]) -> Mapping[str, WrittenTable]:
+    """Return what `--packaged --json` writes of `packaged_tables`: their cells as texts."""
+    return {name: text_table(table).written for name, table in tables.items()}
 
 
 def packaged_tables() -> Mapping[str, Table]:
