@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pyarrow.parquet as parquet
 import pytest
-from made_campaign import GRID, make_campaign
+from made_campaign import GRID, leave_out_figure, make_campaign
 
 from ddct_bringup.api import read_campaign
 from ddct_bringup.campaign import columns
@@ -34,8 +34,9 @@ def finished(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_it_is_shown_and_names_the_metric_that_it_lacks(
-    finished: Path, capsys: pytest.CaptureFixture[str]
+    finished: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    leave_out_figure(monkeypatch)
     before = (finished / RESULTS).read_bytes()
     summary = read_campaign(finished).summary
     assert summary.other_version.absent == (NEW.key,)

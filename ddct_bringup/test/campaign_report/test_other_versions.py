@@ -39,7 +39,7 @@ def changed(tmp_path: Path) -> Path:
 def test_the_terminal_and_the_page_name_the_missing_columns(
     changed: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(['show', str(changed), '--figure', str(changed / 'wear.png')]) == 0
+    assert main(['show', str(changed), '--figure', str(changed / 'wear.html')]) == 0
     printed = capsys.readouterr().out
     assert f'Results of another version:\nwithout {ABSENT}\n' in printed
     assert 'Results of another version' in (changed / PAGE).read_text(encoding='utf-8')

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from in_this_process import in_this_process
+from made_campaign import leave_out_figure
 from made_results import made_results
 
 from ddct_bringup.campaign_report.document import campaign_document
@@ -22,8 +23,9 @@ grid: {wear_gain: [0.8, 1.0], duration_s: [0.7]}
 
 
 def test_the_summary_is_printed_at_the_end_and_the_paths_last(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    leave_out_figure(monkeypatch)
     (tmp_path / 'spec.yaml').write_text(SPEC, encoding='utf-8')
     out = tmp_path / 'out'
     with in_this_process():

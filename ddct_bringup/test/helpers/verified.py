@@ -16,6 +16,7 @@ import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
 from by_schema import require_schema
+from drawn_charts import leave_out_time_charts
 from drawn_here import draw_here
 
 from ddct_bringup.campaign.conduct import RESULTS, SHARDS
@@ -67,7 +68,7 @@ DRAWN = document._charts
 def leave_out_charts(patch: pytest.MonkeyPatch) -> None:
     """Draw no chart on pages of runs and campaigns, which takes most of the time of small ones."""
     draw_here(patch)
-    patch.setattr('ddct_bringup.report.page.time_charts', lambda runs, page: [])
+    leave_out_time_charts(patch)
     patch.setattr(document, '_charts', lambda *_: iter(()))
 
 

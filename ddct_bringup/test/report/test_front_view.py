@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from drawn_charts import leave_out_time_charts
 
 from ddct_bringup.documents.chart import Line, Marks
 from ddct_bringup.report.evidence import evidence_of
@@ -34,6 +35,11 @@ def runs_of(*controllers: str, floors: bool = True) -> list[ScoredRecording]:
     plans = [RunPlan(settings, each, 'headless') for each in controllers]
     scored = [simulate_and_score(plan, LIMITS) for plan in plans]
     return with_floors(scored, LIMITS) if floors else scored
+
+
+@pytest.fixture(autouse=True)
+def no_time_charts(monkeypatch: pytest.MonkeyPatch) -> None:
+    leave_out_time_charts(monkeypatch)
 
 
 @pytest.fixture(scope='module')

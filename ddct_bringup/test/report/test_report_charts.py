@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from drawn_charts import drawn_charts
+from drawn_charts import drawn_charts, loaded_charts
 from made_run import made_facts
 
 from ddct_bringup.bag.trajectory import Trajectory
@@ -80,7 +80,7 @@ def charts():
     """Return the charts by name, as the page loads them."""
     (look,) = looks(1)
     run = ChartRun(0, 'pi', look, RUN, FACTS, True, thesis_engagement_time_s=0.088)
-    return drawn_charts([run])
+    return loaded_charts([run])
 
 
 def drawn(renderer: 'GlyphRenderer') -> tuple[np.ndarray, np.ndarray]:
@@ -89,7 +89,9 @@ def drawn(renderer: 'GlyphRenderer') -> tuple[np.ndarray, np.ndarray]:
 
     source, glyph = renderer.data_source, renderer.glyph
     assert isinstance(source, ColumnDataSource)
-    x, y = (np.asarray(source.data[spec.field]) for spec in (glyph.x, glyph.y))
+    # A name as it is drawn, an object with the name once it is loaded.
+    names = (getattr(spec, 'field', spec) for spec in (glyph.x, glyph.y))
+    x, y = (np.asarray(source.data[name]) for name in names)
     return x, y
 
 
@@ -161,7 +163,7 @@ def test_marks_of_a_line_lie_on_it_and_follow_its_colour():
     (marks,) = [each for each in chart.renderers if each not in lines(chart)]
     np.testing.assert_allclose(drawn(marks)[1], RUN.joint_speed[:, 3] * RPM, rtol=1e-6)
     assert len(marks.view.filter.indices) > 5
-    assert (marks.glyph.marker.value, marks.glyph.fill_color.value) == ('star', look.colour)
+    assert (marks.glyph.marker, marks.glyph.fill_color) == ('star', look.colour)
     assert (marks.visible, marks.tags) == (False, [{'runs': [1]}])
 
 
@@ -250,7 +252,7 @@ def test_each_phase_is_shaded_in_its_own_way_with_the_events_on_it(both):
     source = shade.data_source.data
     assert list(source['opacity']) == [OPACITY[phase] for phase in source['phase']]
     assert len(set(OPACITY.values())) == 3
-    assert (locks.glyph.marker.value, releases.glyph.marker.value) == (
+    assert (locks.glyph.marker, releases.glyph.marker) == (
         'triangle',
         'inverted_triangle',
     )

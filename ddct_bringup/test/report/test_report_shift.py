@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from drawn_charts import drawn_charts
+from drawn_charts import drawn_charts, leave_out_time_charts
 from made_scores import made_scores
 
 from ddct_bringup.campaign.rows import METRIC_COLUMNS, scored_headless
@@ -110,7 +110,10 @@ def test_every_chart_marks_the_start_of_the_shift_and_of_feedback(runs, charts):
         assert {span.location for span in spans} == expected
 
 
-def test_the_page_has_the_metrics_of_the_shift_and_its_words_and_other_pages_have_neither(runs):
+def test_the_page_has_the_metrics_of_the_shift_and_its_words_and_other_pages_have_neither(
+    runs, monkeypatch
+):
+    leave_out_time_charts(monkeypatch)
     html = report_page(runs, [], packaged_limits())
     for metric in OF_SHIFT:
         assert html.count(f'data-metric="{metric.key}"') == len(runs)
