@@ -39,6 +39,12 @@ CONTENT: dict[str, Any] = {
 Make = Callable[..., Tuning]
 
 
+def campaign_of(samples: int) -> dict[str, Any]:
+    """Return the campaign of `CONTENT` with another number of cases."""
+    campaign = CONTENT['campaign']
+    return {**campaign, 'random': {**campaign['random'], 'samples': samples}}
+
+
 def tuning(controller: str = 'pi', folder: Path | None = None, **changes: Any) -> Tuning:
     """Return the tuning of `CONTENT` with other values of its keys."""
     content = {**CONTENT, **changes}

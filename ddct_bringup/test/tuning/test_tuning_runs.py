@@ -13,7 +13,7 @@ import pyarrow as pa
 import pytest
 from refusals import refused
 from samples import sampled
-from small_tuning import leave_out_pictures, tuning
+from small_tuning import campaign_of, leave_out_pictures, tuning
 
 from ddct_bringup.api import run
 from ddct_bringup.evaluation.quantities import MAIN
@@ -307,9 +307,8 @@ def test_a_controller_that_always_fails_ends_with_its_reason(tmp_path: Path) -> 
     file.write_text(FAILING)
     parameters = {'gain': {'low': 0.0, 'high': 1.0}}
     with refused(DdctError) as caught:
-        carry_out_tuning(
-            tuning(str(file), parameters=parameters, trials=100), tmp_path / 'out', workers=1
-        )
+        failing = tuning(str(file), parameters=parameters, trials=100, campaign=campaign_of(1))
+        carry_out_tuning(failing, tmp_path / 'out', workers=1)
     assert 'it fell over' in str(caught.value) and '16 trials' in str(caught.value)
 
 

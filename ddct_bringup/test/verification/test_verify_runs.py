@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`verify` makes the runs of a result again; an edit with its digest is found by that."""
 
+import json
 import re
 import shutil
 from dataclasses import replace
@@ -10,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from by_schema import require_schemas
+from by_schema import require_schema, require_schemas
 from edited_settings import edited
 from samples import sampled
 from verified import (
@@ -56,12 +57,20 @@ def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_an_untouched_folder_is_the_same_to_the_last_bit_wherever_it_is(
     runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    code, document, errors = verified(copied(runs, tmp_path / 'elsewhere'), capfd)
-    assert (code, errors) == (0, '')
+    found = tmp_path / 'found.json'
+    code = verify.main([str(copied(runs, tmp_path / 'elsewhere')), '--json', str(found)])
+    printed = capfd.readouterr()
+    assert (code, printed.err) == (0, '')
+    document = json.loads(found.read_text(encoding='utf-8'))
+    require_schema('verify', document)
     assert states(document) == dict.fromkeys(ALL, 'same_bits')
     assert {file['state'] for file in document['files']} == {'same'}
     assert (document['same'], document['state'], document['bound']) == (True, 'same_bits', 0.0)
     assert document['by_digest'] == ['timing.json']
+    assert re.search(r'mpc3 +same bits', printed.out)
+    times = 'times on the wall clock (timing.json) by digest alone'
+    last = f'as their digests; {times}; everything else was made again, with equal bits.'
+    assert printed.out.splitlines()[-1].endswith(last)
 
 
 def test_the_files_of_compared_runs_are_as_their_schemas(runs: Path) -> None:
@@ -166,7 +175,7 @@ def test_a_metric_seed_or_row_of_the_scores_edited_with_its_digest_is_found(
     assert f'{folder}: scores.json: key {key}' in errors
 
 
-def test_a_margin_edited_with_its_digest_is_found(
+def test_a_margin_and_a_page_edited_with_their_digests_are_found(
     runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     def edit(frequency: Any) -> None:
@@ -174,8 +183,14 @@ def test_a_margin_edited_with_its_digest_is_found(
 
     folder = copied(runs, tmp_path / 'runs')
     edit_json_with_digest(folder, 'frequency.json', edit)
-    code, document, _ = verified(folder, capfd)
-    assert (code, states(document)['frequency.json']) == (1, 'different')
+    page = (folder / 'report.html').read_bytes()
+    edit_with_digest(folder, 'report.html', page.replace(b'mpc3', b'mpc9', 1))
+    code, document, errors = verified(folder, capfd)
+    edited = ('frequency.json', 'report.html')
+    found = {name for name, state in states(document).items() if state != 'same_bits'}
+    assert (code, found) == (1, {*edited})
+    assert {states(document)[name] for name in edited} == {'different'}
+    assert f'{folder}: report.html: file report.html, line ' in errors
 
 
 def _rewrite_bag(folder: Path, timeout_s: str = '', **settings: object) -> None:
@@ -531,17 +546,6 @@ def test_a_bag_of_another_commit_and_code_is_compared_by_its_content(
     assert (code, states(document)) == (1, {'pi': 'different'})
 
 
-def test_an_edited_page_is_different(
-    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
-    folder = copied(runs, tmp_path / 'runs')
-    page = (folder / 'report.html').read_bytes()
-    edit_with_digest(folder, 'report.html', page.replace(b'mpc3', b'mpc9', 1))
-    code, document, errors = verified(folder, capfd)
-    assert (code, states(document)['report.html']) == (1, 'different')
-    assert f'{folder}: report.html: file report.html, line ' in errors
-
-
 def test_a_headless_bag_relabelled_as_real_time_is_different(
     bag: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -628,12 +632,3 @@ def test_nothing_is_called_compared_before_it_was_repeated(
     (folder / 'pi' / 'pi_0.mcap').unlink()
     assert verify.main([str(folder)]) == 1
     assert capfd.readouterr().out == ''
-
-
-def test_the_table_names_what_was_compared(runs: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    assert verify.main([str(runs)]) == 0
-    printed = capfd.readouterr().out
-    assert re.search(r'mpc3 +same bits', printed)
-    times = 'times on the wall clock (timing.json) by digest alone'
-    last = f'as their digests; {times}; everything else was made again, with equal bits.'
-    assert printed.splitlines()[-1].endswith(last)

@@ -12,7 +12,7 @@ import pyarrow.parquet as parquet
 import pytest
 from by_schema import require_schemas
 from python_controllers import IMPORTS, PROPORTIONAL
-from small_tuning import leave_out_pictures, made_tuning
+from small_tuning import campaign_of, leave_out_pictures, made_tuning
 from verified import copied, edit_json_with_digest, edit_manifest, edit_with_digest
 
 from ddct_bringup.campaign.columns import parquet_bytes
@@ -117,7 +117,9 @@ def test_a_tuning_carries_its_controller(tmp_path: Path) -> None:
         controller=str(outer),
         parameters={'gain': {'low': 0.05, 'high': 0.5}},
         constraints={'engaged': {'at_least': 0.0}},
-        trials=4,
+        objectives={'torsion_speed_std_rpm': {}},
+        campaign=campaign_of(3),
+        trials=2,
     )
     shutil.rmtree(work)
     moved = folder.rename(tmp_path / 'moved')
