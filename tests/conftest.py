@@ -13,6 +13,7 @@ import pytest
 from drawn_here import draw_here
 from support.processes import TEST_ID, Programs, note_processes, processes_left
 
+from ddct_bringup.api import shell
 from ddct_bringup.processes.shared_memory import remove_dead_segments
 from ddct_bringup.run.plan import RunPlan
 from ddct_plant.graph.domain import own_domain
@@ -51,6 +52,12 @@ def drawn_here() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         draw_here(patch)
         yield
+
+
+@pytest.fixture
+def no_page(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let programs write a page without its figures, which take longer than the runs."""
+    monkeypatch.setattr(shell, 'report_page', lambda *_: 'page')
 
 
 @pytest.fixture(autouse=True)

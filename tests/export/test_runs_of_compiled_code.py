@@ -145,6 +145,7 @@ def test_what_ends_a_run_of_a_campaign_is_the_reason_in_its_row(harm: str, tmp_p
             )
 
 
+@pytest.mark.usefixtures('no_page')
 def test_a_crash_in_a_comparison_is_the_reason_of_its_run(
     harm: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -158,6 +159,7 @@ def test_a_crash_in_a_comparison_is_the_reason_of_its_run(
     assert len([line for line in lines if 'SIGSEGV' in line]) == 1
 
 
+@pytest.mark.usefixtures('no_page')
 def test_a_crash_while_it_is_loaded_does_not_end_a_comparison(
     harm: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -65,7 +65,7 @@ def imported(package: str) -> set[str]:
                 modules |= {alias.name.partition('.')[0] for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
                 modules.add(node.module.partition('.')[0])
-            elif isinstance(node, ast.Call) and ast.unparse(node.func) == 'solver_package':
+            elif isinstance(node, ast.Call) and getattr(node.func, 'id', '') == 'solver_package':
                 modules.add(ast.literal_eval(node.args[0]))
     return modules - {package} - set(sys.stdlib_module_names)
 

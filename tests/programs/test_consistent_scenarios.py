@@ -29,6 +29,7 @@ def test_bringup_prints_remarks_the_bag_keeps_them_and_score_repeats_them(
     assert f'ddct score: pi: {REMARK}' in capfd.readouterr().err
 
 
+@pytest.mark.usefixtures('no_page')
 def test_a_mass_in_tonnes_runs_and_every_program_warns_on_standard_error(
     capfd: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
@@ -42,6 +43,7 @@ def test_a_mass_in_tonnes_runs_and_every_program_warns_on_standard_error(
     assert warning in capfd.readouterr().err
 
 
+@pytest.mark.usefixtures('no_page')
 def test_compare_prints_remarks_above_its_table(
     capfd: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
@@ -83,6 +85,6 @@ def test_a_node_logs_remarks(programs: Programs, tmp_path: Path, text: str) -> N
     path = tmp_path / 'early.yaml'
     path.write_text(text, encoding='utf-8')
     arguments = ('--ros-args', '-p', f'scenario:={path}')
-    node = programs.start_module('ddct_plant.nodes.load_node', *arguments)
+    node = programs.fork('ddct_plant.nodes.load_node', *arguments)
     wait_until(lambda: REMARK in node.errors(), 'the remark')
     node.stop()

@@ -65,6 +65,7 @@ def test_the_car_has_the_log_s_values_the_data_sheet_s_and_says_which(place: Pat
     assert scenario.gearbox.gears == 6
 
 
+@pytest.mark.usefixtures('no_page')
 def test_it_launches_and_shifts(place: Path, capfd: pytest.CaptureFixture[str]) -> None:
     for drive in ('launch', 'upshift'):
         options = [

@@ -77,6 +77,7 @@ def test_a_gain_that_the_example_does_not_take_is_named(
     assert not (tmp_path / 'runs').exists()
 
 
+@pytest.mark.usefixtures('no_page')
 @pytest.mark.parametrize(
     'command',
     [
@@ -185,7 +186,7 @@ def test_compare_runs_and_names_a_controller_whose_linear_model_is_none(
     assert verify.main([str(out)]) == 0
 
 
-@pytest.mark.usefixtures('broken')
+@pytest.mark.usefixtures('broken', 'no_page')
 def test_compare_goes_on_after_a_controller_that_commands_no_number(
     tmp_path: Path,
 ) -> None:

@@ -22,7 +22,6 @@ from multiprocessing import forkserver, resource_tracker
 from multiprocessing.context import ForkServerProcess
 from pathlib import Path
 
-from ddct_bringup.processes.preloaded import MARK
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program.signals import deferred_signals, held_back
 
@@ -31,6 +30,11 @@ START_S = 60.0
 """Timeout for the imports of the fork server and its forks, s, long enough for a busy machine."""
 _SLICE_S = 0.02
 """Period in s at which a start looks whether it is cancelled."""
+MARK = 'DDCT_FORK_SERVER'
+"""
+Environment variable of the fork server alone, with the process id of its program; without
+it the module that the server imports first does nothing.
+"""
 _PRELOADED = 'ddct_bringup.processes.preloaded'
 
 
@@ -83,6 +87,15 @@ def server_ends(within_s: float) -> bool:
     return True
 
 
+def remove_socket() -> None:
+    """Remove the socket of the fork server of a killed program, and its folder."""
+    address = getattr(forkserver._forkserver, '_forkserver_address', None)
+    with contextlib.suppress(OSError):
+        if address:
+            Path(address).unlink(missing_ok=True)
+            Path(address).parent.rmdir()
+
+
 def state_of(pid: int) -> str:
     """Return the letter of a process's state: Z after its end, T of a paused one, '' for none."""
     with contextlib.suppress(OSError):
@@ -116,8 +129,10 @@ def start_processes(
     # In a thread: the library waits without a limit for a server that imports or is paused.
     starting = threading.Thread(target=start, daemon=True)
     starting.start()
-    while starting.is_alive():
+    started = False
+    while not started:
         starting.join(_SLICE_S)
+        started = not starting.is_alive()
         interrupted = stopped()
         if interrupted or time.monotonic() > deadline:
             cancelled.set()

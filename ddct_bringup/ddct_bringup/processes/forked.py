@@ -16,8 +16,7 @@ from collections.abc import Mapping, Sequence
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-from ddct_bringup.processes.fork_server import CONTEXT, server_ends
-from ddct_bringup.processes.preloaded import remove_socket
+from ddct_bringup.processes.fork_server import CONTEXT, remove_socket, server_ends
 from ddct_plant.program.own_process import NOTE_BYTES, note_calls
 from ddct_plant.program.signals import obey_interrupts
 from ddct_plant.program.supervision import Patience, end_after, supervise

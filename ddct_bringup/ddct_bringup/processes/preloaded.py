@@ -15,18 +15,12 @@ import os
 import signal
 import sys
 from collections.abc import Iterator
-from multiprocessing import forkserver
 from pathlib import Path
 
-from ddct_bringup.processes.graph_nodes import NODE_PROGRAMS
+from ddct_bringup.processes.fork_server import MARK, remove_socket
 from ddct_bringup.processes.shared_memory import remove_dead_segments
 from ddct_plant.program.signals import block_interrupts
 
-MARK = 'DDCT_FORK_SERVER'
-"""
-Environment variable of the fork server alone, with the process id of its program; where it is
-missing, this module does nothing.
-"""
 _LATER = (
     'daqp',
     'ddct_controllers.mpc.qp.solvers',
@@ -82,15 +76,6 @@ def _tidy(server: int, program: int) -> None:
     remove_socket()
 
 
-def remove_socket() -> None:
-    """Remove the socket of the fork server of a killed program, and its folder."""
-    address = getattr(forkserver._forkserver, '_forkserver_address', None)
-    with contextlib.suppress(OSError):
-        if address:
-            Path(address).unlink(missing_ok=True)
-            Path(address).parent.rmdir()
-
-
 def _preload() -> None:
     """
     Import the nodes, the middleware's libraries and the messages, and find the commit.
@@ -98,6 +83,8 @@ def _preload() -> None:
     No third party's controller is imported: only the process of its node loads it. A node itself
     reports what cannot be imported.
     """
+    from ddct_bringup.processes.graph_nodes import NODE_PROGRAMS
+
     for module in (*(node.module for node in NODE_PROGRAMS), *_LATER):
         with contextlib.suppress(Exception):
             importlib.import_module(module)

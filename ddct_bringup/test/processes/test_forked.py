@@ -8,26 +8,21 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from stub_programs import gone
+from stub_programs import SMALL_SERVER, Start, gone
 from waiting import WITHIN_S, wait_until
 
 from ddct_bringup.processes import fork_server
 from ddct_bringup.processes.fork_server import server_pid, start_processes, stop_server
 from ddct_bringup.processes.forked import Forked
-from ddct_bringup.run import description
-from ddct_bringup.run.description import commit_of
 from ddct_plant.base.errors import DdctError
-from ddct_plant.graph.domain import own_domain
 from ddct_plant.program.supervision import Patience
 
-pytestmark = pytest.mark.process
+pytestmark = [pytest.mark.process, pytest.mark.usefixtures('small_server')]
 
-Start = Callable[..., Forked]
 ABOUT_ITSELF = """
 import json, os, signal, sys, threading
 def main():
@@ -44,34 +39,6 @@ def main():
         'blocked': [*map(int, signal.pthread_sigmask(signal.SIG_BLOCK, ()))],
     }))
 """
-
-
-@pytest.fixture
-def start(module: Callable[[str], str]) -> Iterator[Start]:
-    """Return a function that starts a text as a program; it is killed at the end."""
-    with ExitStack() as started:
-
-        def fork(text: str, *arguments: str, patience: Patience | None = None) -> Forked:
-            forked = Forked(module(text), *arguments, patience=patience)
-            started.callback(forked.close)
-            start_processes([forked.process])
-            forked.begin()
-            started.callback(forked.send, signal.SIGKILL)
-            return forked
-
-        yield fork
-
-
-@pytest.fixture
-def run(start: Start) -> Start:
-    """Return a function that runs a text as a program to its end."""
-
-    def to_its_end(text: str, *arguments: str) -> Forked:
-        forked = start(text, *arguments)
-        assert forked.wait(WITHIN_S)
-        return forked
-
-    return to_its_end
 
 
 def test_a_fork_has_our_environment_as_it_is_now_and_nothing_else_of_ours(
@@ -116,60 +83,6 @@ def test_a_fork_ends_as_a_program_of_its_own_would(
     forked = run(text)
     assert forked.code() == code
     assert ['', *forked.lines()][-1] == last_line
-
-
-def test_two_forks_draw_other_random_numbers(run: Start) -> None:
-    text = (
-        'import random\n'
-        'from numpy import random as others\n'
-        'def main(): print(random.random(), others.random(), others.default_rng().random())\n'
-    )
-    first, second = (run(text).printed_text().split() for _ in range(2))
-    assert all(one != other for one, other in zip(first, second, strict=True))
-
-
-def test_a_fork_knows_the_commit_of_the_sources_without_git(run: Start) -> None:
-    pytest.importorskip('rclpy')
-    text = (
-        'import os\n'
-        'from ddct_bringup.run.description import source_commit\n'
-        'def main():\n'
-        '    os.environ["PATH"] = "/nowhere"\n'
-        '    print(source_commit())\n'
-    )
-    assert run(text).lines() == [commit_of(Path(description.__file__))]
-
-
-def test_a_node_imports_no_generator_of_messages_and_can_import_all_of_it(
-    run: Start, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    pytest.importorskip('rclpy')
-    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
-    with own_domain():
-        forked = run(
-            'import sys, rclpy\n'
-            'def main():\n'
-            '    rclpy.init()\n'
-            '    rclpy.create_node("alone").destroy_node()\n'
-            '    print({"em", "lark", "rosidl_generator_py"} & set(sys.modules))\n'
-            '    rclpy.shutdown()\n'
-            '    from rosidl_generator_py import generate_py\n'
-            '    print(generate_py.__name__)\n'
-        )
-    assert forked.lines() == ['set()', 'generate_py']
-
-
-def test_the_fork_server_has_imported_the_nodes_and_no_thread_of_python(run: Start) -> None:
-    pytest.importorskip('rclpy')
-    text = (
-        'import sys, threading\n'
-        'MODULES = ("rclpy", "ddct_bringup.record.recorder_node", "scipy.linalg")\n'
-        'BEFORE = [name for name in MODULES if name in sys.modules]\n'
-        'def main(): print(*BEFORE, threading.active_count())\n'
-    )
-    names = 'rclpy ddct_bringup.record.recorder_node scipy.linalg'
-    # The second thread is ours: it waits for the end of the program.
-    assert run(text).lines() == [f'{names} 2']
 
 
 HANGS = {
@@ -315,7 +228,7 @@ def test_a_folder_for_temporary_files_with_a_long_name_is_reported(
 
 def test_ctrl_c_in_a_terminal_does_not_reach_the_server_while_it_starts() -> None:
     text = (
-        'import os, signal\n'
+        f'{SMALL_SERVER}import os, signal\n'
         'from multiprocessing import util\n'
         'from ddct_bringup.processes.fork_server import CONTEXT, start_server\n'
         'started = util.spawnv_passfds\n'
@@ -382,7 +295,7 @@ def test_a_program_that_is_killed_after_its_server_leaves_nothing(
     wait_until(lambda: gone(node) and _nothing_left(tmp_path), 'the end')
 
 
-PROGRAM = """
+PROGRAM = f"""{SMALL_SERVER}
 import os, sys, time
 from pathlib import Path
 sys.path.insert(0, sys.argv[1])

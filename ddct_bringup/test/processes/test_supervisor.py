@@ -24,7 +24,7 @@ from ddct_bringup.processes.supervisor import Node, Supervisor
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program.supervision import Patience
 
-pytestmark = pytest.mark.process
+pytestmark = [pytest.mark.process, pytest.mark.usefixtures('small_server')]
 
 LIVE = """
 import faulthandler, os, signal, sys, time
