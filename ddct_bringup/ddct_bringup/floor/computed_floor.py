@@ -16,7 +16,6 @@ from ddct_bringup.floor.program.linear_program import CLOSED_FORM, RAY
 from ddct_bringup.floor.replays.attained import Replays, replays_of
 from ddct_bringup.floor.values import Floor, Proof, objective_of
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.program.arithmetic import limit_threads, named_threads
 
 DEMAND, LIMITS = (
     'runs in which the engine gives the demand',
@@ -49,9 +48,7 @@ def computed_floor(
     if known is not None:
         return ComputedFloor(known.floor, known.limited)
     closed = metric == FRICTION
-    # More threads take several times as long.
-    with limit_threads(named_threads()):
-        found = _closed_form(case) if closed else _computed(case, metric, begin, attain)
+    found = _closed_form(case) if closed else _computed(case, metric, begin, attain)
     store(digest, KnownFloor(found.floor, found.limited))
     return found
 

@@ -4,7 +4,9 @@
 
 import math
 from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from dataclasses import replace
+from typing import Any
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.case import Case, case_at, case_of_run
@@ -17,6 +19,7 @@ from ddct_bringup.floor.metric_units import FRICTION
 from ddct_bringup.floor.values import Floor, OverFloor, Proof, value_of
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.program.arithmetic import limit_threads, named_threads
 from ddct_plant.scenario.settings import RunSettings
 
 
@@ -45,15 +48,21 @@ def floors_at(
         )
     narrow = case_at(settings, start, lock_time_s, limited=False)
     wide = replace(narrow, limited=True)
-    floors = []
     proofs: dict[bool, Proof] = {}
-    for metric in metrics:
+
+    def floor(metric: str) -> Floor:
         found = _found(narrow, metric, proofs)
-        floor = found.floor
-        if found.limited:
-            floor = _with_attained(_found(wide, metric, proofs, found.last).floor, floor)
-        floors.append(floor)
-    return floors
+        if not found.limited:
+            return found.floor
+        return _with_attained(_found(wide, metric, proofs, found.last).floor, found.floor)
+
+    with _few_threads():
+        return [floor(metric) for metric in metrics]
+
+
+def _few_threads() -> AbstractContextManager[Any]:
+    """Let a process compute floors with the named threads: more take several times as long."""
+    return limit_threads(named_threads())
 
 
 def _found(
@@ -118,4 +127,5 @@ def _over(case: Case, metric: str, value: float) -> OverFloor:
 
 def floor_of_case(case: Case, metric: str) -> Floor:
     """Return the floor of a metric for the runs of a case, without a run near it."""
-    return computed_floor(case, metric, attain=False).floor
+    with _few_threads():
+        return computed_floor(case, metric, attain=False).floor

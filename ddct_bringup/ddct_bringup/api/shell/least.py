@@ -88,10 +88,10 @@ def least_values(
     """
     start = control_start(settings)
     times = lock_times_s or usual_lock_times(settings, start)
-    points = front(settings, metrics, times, start, workers)
-    floors = [
-        floor for point in with_progress(points, len(times), 'lock times') for floor in point
-    ]
+    # Late lock times take longest: with them at first all workers end at about the same time.
+    points = front(settings, metrics, times[::-1], start, workers)
+    found_last_first = [*with_progress(points, len(times), 'lock times')]
+    floors = [floor for point in reversed(found_last_first) for floor in point]
 
     def rows_of(chosen: Chosen) -> list[ControllerRow]:
         return controller_rows(settings, chosen, metrics, start)

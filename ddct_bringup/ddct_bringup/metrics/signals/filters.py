@@ -76,8 +76,8 @@ def filtered(sections: np.ndarray, values: np.ndarray) -> np.ndarray:
 class Recursion:
     """Recursion of a section; the number of samples in sequence so far chooses its means."""
 
-    STEPS_BEFORE_IMPORT = 50_000
-    """Number of samples in sequence that take half as long as the import of `scipy.signal`."""
+    STEPS_BEFORE_IMPORT = 100_000
+    """Number of samples in sequence that take as long as the import of `scipy.signal`."""
 
     def __init__(self) -> None:
         self._steps = 0
