@@ -62,13 +62,14 @@ class Architectures:
         """Take the controllers as the feedback, whose torques are multiplied by a factor."""
         scenarios = [run.scenario for run in known]
         drivelines = [scenario.controlled_driveline for scenario in scenarios]
-        static = static_torques(drivelines, scenarios[0].equilibrium)
+        static = static_torques(drivelines, [each.equilibrium for each in scenarios])
         self._open_loops = make_open_loops(known, static)
         self._loads = Loads([known_load(run) for run in known], steps)
         self._controllers, self._factor = controllers, feedback_factor
-        self._closing = ClosingStages(scenarios, static) if scenarios[0].closing else None
+        closing = any(each.closing for each in scenarios)
+        self._closing = ClosingStages(scenarios, static) if closing else None
         detailed = known[0].detailed and not known[0].shift
-        self._start = scenarios[0].control_start_step if detailed else 0
+        self._start = np.array([each.control_start_step if detailed else 0 for each in scenarios])
         self._torque_phases = TorquePhases(known, steps + 1) if known[0].shift else None
         self._last_request = np.zeros(len(known))
         self.fed = np.zeros(len(known), dtype=bool)
@@ -93,9 +94,8 @@ class Architectures:
         open_loop = share * self._open_loops(measured)
         on = running & (measured.step >= self._start) & (share == 1.0)
         if self._closing:
-            open_loop = open_loop + self._closing.update(
-                measured, open_loop, self._last_request, on
-            )
+            added = self._closing.update(measured, open_loop, self._last_request, on)
+            open_loop = np.where(self._closing.there, open_loop + added, open_loop)
             on = on & ~self._closing.closed
         measured = measured._replace(open_loop_torque=open_loop, on=on)
         self.fed |= on

@@ -9,6 +9,7 @@ import numpy as np
 
 from ddct_bringup.batch.controllers.interface import Measured
 from ddct_plant.base.timebase import PERIOD_S, steps_in
+from ddct_plant.scenario.control import ClosingParameters
 from ddct_plant.scenario.scenario import Scenario
 
 
@@ -16,12 +17,17 @@ class ClosingStages:
     """Closing stages of R runs, the counterpart of `ClosingStage`."""
 
     def __init__(self, scenarios: Sequence[Scenario], static_torques: Any) -> None:
-        """Start open; all scenarios have a closing stage, `static_torques` is C_fOL of them."""
-        parameters = [each.closing for each in scenarios if each.closing is not None]
+        """
+        Start open; `static_torques` is C_fOL of the scenarios.
+
+        Runs of scenarios without a closing stage never close.
+        """
+        parameters = [each.closing or ClosingParameters() for each in scenarios]
+        most = zip(parameters, scenarios, strict=True)
         self._static = static_torques
-        self._most = np.array(
-            [each.closing.most_request(each.friction) for each in scenarios if each.closing]
-        )
+        self.there = np.array([each.closing is not None for each in scenarios])
+        """Whether a run has a closing stage, (R,)."""
+        self._most = np.array([each.most_request(scenario.friction) for each, scenario in most])
         self._band = np.array([each.slip_band_rad_s for each in parameters])
         self._dwell = np.array([steps_in('closing.dwell_s', each.dwell_s) for each in parameters])
         self._beyond = np.array([each.margin - 1.0 for each in parameters])
@@ -41,7 +47,7 @@ class ClosingStages:
         `on` is whether the architecture has started feedback; the torques are in N m.
         """
         in_reach = self.closed | (last_request <= self._most)
-        within = on & in_reach & self._within_band(measured)
+        within = on & self.there & in_reach & self._within_band(measured)
         self._within = np.where(within, self._within + 1, 0)
         was_closed, self.closed = self.closed, self._within > self._dwell
         opening = self._along_ramp(self._added, 0.0)

@@ -17,7 +17,8 @@ def nominal_slips(runs: Sequence[KnownSettings], control_start: int) -> np.ndarr
     """Return the nominal slips of R runs as `nominal_slip` does, (R, control_start + 1)."""
     nominal = [nominal_settings(run.scenario) for run in runs]
     plants, scenarios = Plants(nominal, control_start), [run.scenario for run in runs]
-    static = static_torques([each.driveline for each in scenarios], scenarios[0].equilibrium)
+    drivelines = [each.driveline for each in scenarios]
+    static = static_torques(drivelines, [each.equilibrium for each in scenarios])
     loads = Loads([known_load(run) for run in runs], control_start)
     slips, running = [], np.ones(len(runs), dtype=bool)
     for step in range(control_start + 1):

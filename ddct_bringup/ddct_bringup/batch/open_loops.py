@@ -3,6 +3,7 @@
 """Open-loop torques of many runs, of one architecture."""
 
 from collections.abc import Callable, Hashable, Sequence
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -17,13 +18,23 @@ from ddct_plant.scenario.settings import KnownSettings
 
 _NOTHING = 'base'
 """Architecture without an open loop."""
+_FULL = 'full'
+"""Equilibrium that counts the damping of engine and primary shaft."""
 OpenLoops = Callable[[Measured], np.ndarray]
 """Function from the measured signals with C_load to the torques in N m, (R,), without feedback."""
 
 
-def static_torques(drivelines: Sequence[DrivelineParameters], equilibrium: str) -> Any:
-    """Return the `StaticTorque` of R drivelines of one equilibrium; its values are (R,)."""
-    return StaticTorque(stacked(drivelines), equilibrium)
+def static_torques(drivelines: Sequence[DrivelineParameters], equilibria: Sequence[str]) -> Any:
+    """
+    Return the `StaticTorque` of R drivelines with their equilibria; its torques are (R,).
+
+    The equilibrium `thesis` is the `full` one of a driveline without these dampings.
+    """
+    counted = [
+        each if equilibrium == _FULL else replace(each, engine_damping=0.0, shaft_damping=0.0)
+        for each, equilibrium in zip(drivelines, equilibria, strict=True)
+    ]
+    return StaticTorque(stacked(counted), _FULL)
 
 
 def known_load(known: KnownSettings) -> RoadLoad:
@@ -33,11 +44,10 @@ def known_load(known: KnownSettings) -> RoadLoad:
 
 
 def open_loop_kind(known: KnownSettings) -> Hashable:
-    """Return what runs with common open loops share: equilibrium, and order of the feedforward."""
-    scenario = known.scenario
+    """Return what runs with common open loops share: also the order of the feedforward."""
     if known.detailed or known.architecture == _NOTHING:
-        return known.architecture, scenario.equilibrium
-    return known.architecture, scenario.equilibrium, scenario.actuator.delay_substeps
+        return known.architecture
+    return known.architecture, known.scenario.actuator.delay_substeps
 
 
 def make_open_loops(known: Sequence[KnownSettings], static: Any) -> OpenLoops:

@@ -3,13 +3,14 @@
 """Slip references of many runs with their previews."""
 
 from abc import ABC, abstractmethod
+from collections import defaultdict
 from collections.abc import Hashable, Sequence
 from typing import Any
 
 import numpy as np
 
 from ddct_bringup.batch.nominal_slips import nominal_slips
-from ddct_bringup.batch.stacks import distinct
+from ddct_bringup.batch.stacks import distinct, rows_of
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.scenario.control import ENGINE_SPEED_TARGET, PROFILE
 from ddct_plant.scenario.settings import KnownSettings
@@ -28,18 +29,49 @@ def why_no_reference(settings: KnownSettings) -> str:
     return ''
 
 
-def reference_kind(settings: KnownSettings) -> Hashable:
-    """Return what runs with common `References` share."""
+def _reference_kind(settings: KnownSettings) -> Hashable:
     nominal = None if settings.detailed else nominal_settings(settings.scenario).stick_slip
-    return _kind(settings), settings.scenario.control_start_step, nominal
+    return descent_kind(settings), settings.scenario.control_start_step, nominal
 
 
-def _kind(settings: KnownSettings) -> str:
+def descent_kind(settings: KnownSettings) -> str:
+    """Return what runs with common `Descents` share besides their control start."""
     shape = settings.reference_shape
     return shape if shape in (_RAMP, PROFILE) else 'timed'
 
 
 class References:
+    """Slip references of R runs of several kinds, those of one kind together."""
+
+    def __init__(self, runs: Sequence[KnownSettings], preview_steps: int, steps: int) -> None:
+        """Compute everything that does not depend on the slip, up to step `steps`."""
+        places: dict[Hashable, list[int]] = defaultdict(list)
+        for place, run in enumerate(runs):
+            places[_reference_kind(run)].append(place)
+        self._parts = [
+            (
+                rows_of(of_kind),
+                _ReferencesOfOneKind([runs[each] for each in of_kind], preview_steps, steps),
+            )
+            for of_kind in places.values()
+        ]
+        self._shape = len(runs), preview_steps + 1
+
+    def update(self, step: int, slip_speed: np.ndarray, share: Any = 1.0) -> Points:
+        """
+        Return references and rates at steps k, k + 1, ..., k + P, (R, P + 1), for w_d, (R,).
+
+        The units are rad/s and rad/s^2. `share` is that of a shift, here 1.
+        """
+        if len(self._parts) == 1:
+            return self._parts[0][1].update(step, slip_speed)
+        speeds, rates = np.empty((2, *self._shape))
+        for rows, part in self._parts:
+            speeds[rows], rates[rows] = part.update(step, slip_speed[rows])
+        return speeds, rates
+
+
+class _ReferencesOfOneKind:
     """Slip references of R runs of one kind, the counterpart of `DescendingReference`."""
 
     def __init__(self, runs: Sequence[KnownSettings], preview_steps: int, steps: int) -> None:
@@ -50,12 +82,8 @@ class References:
         self._start_value = np.zeros(len(runs)) if self._stored is None else self._stored[:, -1]
         self._descents = make_descents(runs, preview_steps, steps)
 
-    def update(self, step: int, slip_speed: np.ndarray, share: Any = 1.0) -> Points:
-        """
-        Return references and rates at steps k, k + 1, ..., k + P, (R, P + 1), for w_d, (R,).
-
-        The units are rad/s and rad/s^2. `share` is that of a shift, here 1.
-        """
+    def update(self, step: int, slip_speed: np.ndarray) -> Points:
+        """Return references and rates as `References` does."""
         if self._stored is None and step <= self._start:
             self._start_value = slip_speed
         waiting = min(max(self._start - step, 0), self._points)
@@ -100,7 +128,7 @@ def make_descents(runs: Sequence[KnownSettings], preview_steps: int, steps: int)
     """Return the descents of runs of one kind, for references up to step `steps`."""
     periods = np.arange(max(steps - runs[0].scenario.control_start_step + 1, 0) + preview_steps)
     kinds: dict[str, type[Descents]] = {_RAMP: _Ramps, PROFILE: _Profiles}
-    return kinds.get(_kind(runs[0]), _Timed)(runs, periods)
+    return kinds.get(descent_kind(runs[0]), _Timed)(runs, periods)
 
 
 def _of_periods(table: np.ndarray, first: int | np.ndarray, count: int) -> np.ndarray:

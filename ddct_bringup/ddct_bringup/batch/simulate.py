@@ -15,7 +15,7 @@ from ddct_bringup.batch.handovers.choice import handover_kind, make_handovers
 from ddct_bringup.batch.open_loops import open_loop_kind
 from ddct_bringup.batch.plant.plants import Plants, plant_kind
 from ddct_bringup.batch.recorder import Recorder
-from ddct_bringup.batch.references import References, reference_kind
+from ddct_bringup.batch.references import References, descent_kind
 from ddct_bringup.batch.shift_references import ShiftReferences
 from ddct_controllers.handover.interface import HandoverMeasurement
 from ddct_controllers.interface import Controller
@@ -39,15 +39,9 @@ class Stack(NamedTuple):
 
 def loop_kind(settings: RunSettings) -> Hashable:
     """Return what runs share that are simulated together."""
-    scenario, known = settings.scenario, settings.known
-    return (
-        plant_kind(settings),
-        scenario.equilibrium,
-        open_loop_kind(known),
-        known.scenario.closing is not None,
-        handover_kind(known) if settings.shift else None,
-        reference_kind(known),
-    )
+    known = settings.known
+    shift = (handover_kind(known), descent_kind(known)) if settings.shift else None
+    return plant_kind(settings), open_loop_kind(known), shift
 
 
 def simulate_batch(

@@ -53,6 +53,13 @@ def distinct(keys: Iterable[Hashable]) -> tuple[list[int], np.ndarray]:
     return first, np.array(inverse)
 
 
+def rows_of(places: Sequence[int]) -> slice | np.ndarray:
+    """Return ascending places as an index, one without copies where they are successive."""
+    if places and places[-1] + 1 - places[0] == len(places):
+        return slice(places[0], places[-1] + 1)
+    return np.array(places, dtype=int)
+
+
 def by_run(matrices: Sequence[np.ndarray], places: np.ndarray) -> np.ndarray:
     """
     Return the matrix (m, n) of all runs, or a stack (R, m, n) where they differ.

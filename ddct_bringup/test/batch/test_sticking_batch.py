@@ -11,6 +11,7 @@ from batch_runs import bits_of, engine, friction, road, sensors, short_run, some
 from step_by_step import batch_of, step_by_step
 
 from ddct_bringup.batch.batchable import why_not_batchable
+from ddct_bringup.batch.simulate import loop_kind
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
@@ -133,3 +134,21 @@ def test_a_run_does_not_depend_on_the_rest_of_a_batch(size):
     together, mixed = bits_of(chosen), bits_of([chosen[place] for place in order])
     assert together[:: size // 3 or 1] == alone
     assert mixed == [together[place] for place in order]
+
+
+def test_runs_of_other_drives_are_in_one_batch_and_change_no_bit():
+    starts = {'thesis_sticking': 0.2, 'launch': 0.1, 'tip_in': 0.3}
+    runs = []
+    for scenario, start_s in starts.items():
+        changes = {
+            **{'duration_s': start_s + 0.5, 'control_start_s': start_s},
+            'score_window_s': [start_s, start_s + 0.4],
+        }
+        settings = RunSettings(KnownSettings(load_scenario(scenario, changes)))
+        runs.append((settings, make_controller('ls8', settings.known)))
+    described = [settings.scenario for settings, _ in runs]
+    assert len({each.equilibrium for each in described}) == 2
+    assert {each.closing is None for each in described} == {True, False}
+    assert {each.engine_limits is None for each in described} == {True, False}
+    assert len({loop_kind(settings) for settings, _ in runs}) == 1
+    assert bits_of(runs) == [bits_of([run])[0] for run in runs]

@@ -8,6 +8,7 @@ import numpy as np
 
 from ddct_bringup.batch.batchable import kind_of
 from ddct_bringup.batch.controllers.interface import Measured, StackedController
+from ddct_bringup.batch.stacks import rows_of
 from ddct_controllers.interface import Controller
 from ddct_plant.scenario.settings import KnownSettings
 
@@ -29,7 +30,7 @@ class MixedControllers:
         """Largest number of steps that a controller looks ahead."""
         self._parts = [
             (
-                _slice(of_kind),
+                rows_of(of_kind),
                 kind[0].of(
                     [controllers[each] for each in of_kind], [known[each] for each in of_kind]
                 ),
@@ -51,9 +52,3 @@ class MixedControllers:
 def _kind(controller: Controller) -> _Kind:
     kind = kind_of(controller)
     return kind, controller.preview_steps, kind.key(controller)
-
-
-def _slice(places: Sequence[int]) -> 'slice | np.ndarray':
-    """Return ascending places as an index, one without copies where they are successive."""
-    first, last = places[0], places[-1] + 1
-    return slice(first, last) if len(places) == last - first else np.array(places)

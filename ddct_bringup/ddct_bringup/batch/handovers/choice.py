@@ -33,7 +33,7 @@ def handover_kind(known: KnownSettings) -> Hashable:
     """Return what shifts share whose handovers are stacked."""
     scenario = known.scenario
     limited = scenario.engine_limits is not None
-    return known.handover, scenario.control_start_step, scenario.equilibrium, limited
+    return known.handover, scenario.control_start_step, limited
 
 
 def make_handovers(known: Sequence[KnownSettings]) -> StackedHandover:

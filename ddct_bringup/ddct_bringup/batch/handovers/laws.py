@@ -37,7 +37,7 @@ class HandoverModels:
     """
     The rigid cars of R shifts, the counterpart of `HandoverModel`; every value is (R,).
 
-    All shifts have one equilibrium and start at one step. C_load of everything that resists is
+    All shifts start at one step. C_load of everything that resists is
     given with each measurement, since the architecture has the same.
     """
 
@@ -48,7 +48,7 @@ class HandoverModels:
         closing = [each.closing or ClosingParameters() for each in scenarios]
         self._balance = stacked([OffGoingBalance.of(gears_of(each)) for each in scenarios])
         drivelines = [each.controlled_driveline for each in scenarios]
-        self._static = static_torques(drivelines, scenarios[0].equilibrium)
+        self._static = static_torques(drivelines, [each.equilibrium for each in scenarios])
         self._cut = np.array([shift.torque_cut_n_m for shift in shifts])
         lags_s = np.array([each.actuator.lag_s for each in scenarios])
         self._cut_rise_s = np.maximum(CUT_RISE_S, CUT_RISE_LAGS * lags_s)

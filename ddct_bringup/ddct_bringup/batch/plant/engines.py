@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ddct_bringup.batch.stacks import Curves, distinct
+from ddct_bringup.batch.stacks import Curves, distinct, rows_of
 from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S
 from ddct_plant.models.engine import EngineAuthority
 from ddct_plant.models.engine_limits import EngineLimits
@@ -95,11 +95,7 @@ def _limited(values: np.ndarray, limits: np.ndarray) -> np.ndarray:
 
 
 class Engines:
-    """
-    Engines of R runs, the counterpart of `Engine`.
-
-    Either all of them have limits or none has.
-    """
+    """Engines of R runs, with limits or without, the counterpart of `Engine`."""
 
     def __init__(self, scenarios: Sequence[Scenario], steps: int) -> None:
         """Extend the demands to step `steps`."""
@@ -111,6 +107,9 @@ class Engines:
         self._responses = EngineResponses([each.engine_authority for each in scenarios])
         limits = [each.engine_limits for each in scenarios if each.engine_limits is not None]
         self._limited = LimitedEngines(limits) if limits else None
+        self._with_limits = rows_of(
+            [place for place, each in enumerate(scenarios) if each.engine_limits is not None]
+        )
 
     def demand(self, step: int) -> np.ndarray:
         """Return the driver's demands of C_m in N m, (R,), at step `step`."""
@@ -122,10 +121,16 @@ class Engines:
     ) -> np.ndarray:
         """Return C_m over a period for demands and requests in N m at w_m in rad/s, (R,) each."""
         requested = demand if request is None else self._responses.deliver(demand, request)
-        return requested if self._limited is None else self._limited.deliver(requested, speed)
+        if self._limited is None:
+            return requested
+        rows = self._with_limits
+        torque = requested.copy()
+        torque[rows] = self._limited.deliver(requested[rows], speed[rows])
+        return torque
 
     def over(self, speed: np.ndarray) -> np.ndarray:
         """Return for w_m in rad/s, (R,), whether the engine ends the run."""
-        if self._limited is None:
-            return np.zeros(len(speed), dtype=bool)
-        return self._limited.over(speed)
+        over = np.zeros(len(speed), dtype=bool)
+        if self._limited is not None:
+            over[self._with_limits] = self._limited.over(speed[self._with_limits])
+        return over

@@ -47,9 +47,8 @@ class Loads:
 def plant_kind(settings: RunSettings) -> Hashable:
     """Return what runs with common `Plants` share."""
     scenario = settings.scenario
-    limited, sensed = scenario.engine_limits is not None, scenario.sensors is not None
     changes = tuple(engagement_steps(scenario.shift)[1]) if scenario.shift else None
-    return settings.stick_slip, limited, sensed, changes
+    return settings.stick_slip, scenario.sensors is not None, changes
 
 
 class Plants:

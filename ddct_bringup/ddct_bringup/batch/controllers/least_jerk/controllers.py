@@ -49,7 +49,7 @@ class LeastJerkControllers(StackedController):
         designs = [each.design for each in controllers]
         first, drivelines = designs[0], [each.driveline for each in designs]
         self._sticks, self._shifts = first.sticks, first.shifts
-        self._static = static_torques(drivelines, first.static.equilibrium)
+        self._static = static_torques(drivelines, [each.static.equilibrium for each in designs])
         self._engine_inertia = numbers(drivelines, 'engine_inertia')
         self._damping = numbers(drivelines, 'engine_damping')
         options = [each.options for each in designs]
@@ -83,11 +83,10 @@ class LeastJerkControllers(StackedController):
 
     @classmethod
     def key(cls, controller: Controller) -> Hashable:
-        """Return whether clutches lock and shift, the equilibrium, and sizes of the actuator."""
+        """Return whether clutches lock and shift, and sizes of the actuator."""
         assert isinstance(controller, LeastJerk)
         design = controller.design
-        waiting = sizes(controller.actuator)
-        return design.sticks, design.shifts, design.static.equilibrium, waiting
+        return design.sticks, design.shifts, sizes(controller.actuator)
 
     @classmethod
     def of(cls, controllers: Sequence[Controller], known: Sequence[KnownSettings]) -> Self:
