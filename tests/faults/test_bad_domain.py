@@ -45,7 +45,7 @@ def test_a_run_without_a_graph_does_not_read_it(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setenv('ROS_DOMAIN_ID', '999')
-    assert bringup.main(['--headless', '--out', str(tmp_path / 'out')]) == 0
+    assert bringup.main(['--headless', '--duration', '0.7', '--out', str(tmp_path / 'out')]) == 0
 
 
 def test_each_graph_has_another_domain_than_the_one_before(

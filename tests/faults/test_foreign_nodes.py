@@ -163,7 +163,7 @@ def test_an_error_about_a_second_publisher_waits_a_while_for_its_name(
     """The middleware lists a topic before the name of its node."""
     calls = count()
     name_late(monkeypatch, lambda: next(calls) < unnamed_calls)
-    graph = graph_of(plan(mode=mode, duration_s=5.0))
+    graph = graph_of(plan(mode=mode, duration_s=1.5))
     with another_type(graph):
         graph.add_all()
         complaint = complaint_about_another_type(graph)

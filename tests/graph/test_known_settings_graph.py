@@ -43,7 +43,7 @@ CONTROL = ('controller', 'reference', 'handover')
 def test_every_layout_leaves_the_same_bytes_with_settings_that_control_nodes_do_not_know(
     tmp_path: Path, scenario: str, varied: dict[str, Any]
 ) -> None:
-    settings = settings_with(varied, scenario, duration_s=1.0)
+    settings = settings_with(varied, scenario, duration_s=0.6)
     bags = []
     for layout in LAYOUTS:
         run = RunPlan(settings, 'mpc_preview', layout)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from geometry_msgs.msg import WrenchStamped
 from rclpy.node import Node
+from samples import sampled
 from support.altering import add_silent
 from support.in_process_graph import GraphOf
 from support.runs import LAYOUTS, bag_bytes, expected, plan, record
@@ -105,7 +106,7 @@ class _Listener(Node):
         torques[step_of_stamp(stamp_ns(message))] = ENGINE_TORQUE.read(message)
 
 
-@pytest.mark.parametrize('answers_again', [False, True], ids=['silent', 'silent for a while'])
+@pytest.mark.parametrize('answers_again', sampled([True, False], every=2))
 def test_in_real_time_the_engine_goes_back_to_the_demand_when_requests_stop_and_stays_there(
     graph_of: GraphOf, answers_again: bool
 ) -> None:
