@@ -3,6 +3,7 @@
 """Least-squares problem of a fit to the stretches of a log, with the noise of the speeds."""
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
 
 import numpy as np
 import scipy
@@ -127,7 +128,8 @@ class LogProblem:
                 break
         # The model of a short log has less noise at low frequencies than there is.
         model, self._noise = self._noise, _Noise(left, fitted, 0)
-        variance = np.maximum(variance, _variance(self._jacobian(x, stretches)))
+        jacobian = self._jacobian(x, stretches, self._residuals(x, stretches))
+        variance = np.maximum(variance, _variance(jacobian))
         self._noise = model
         return x, variance
 
@@ -135,7 +137,8 @@ class LogProblem:
         """Return the steps from x to the fits to other logs, (k, n), by Gauss and Newton."""
         steps = np.zeros((len(others), len(x)))
         for step, each in zip(steps, map(self._used, others), strict=True):
-            jacobian, residuals = self._jacobian(x, each), self._residuals(x, each)
+            residuals = self._residuals(x, each)
+            jacobian = self._jacobian(x, each, residuals)
             step[:] = np.linalg.lstsq(jacobian, -residuals, rcond=None)[0]
         return steps
 
@@ -148,15 +151,19 @@ class LogProblem:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return x of the best fit, and the Jacobian of the residuals there."""
         bound = self._unknowns.bound
+
+        @lru_cache(maxsize=1)  # scipy asks for the Jacobian where it has just had the residuals
+        def residuals(place: bytes) -> np.ndarray:
+            return self._residuals(np.frombuffer(place), stretches)
+
         answer = scipy.optimize.least_squares(
-            self._residuals,
+            lambda x: residuals(x.tobytes()),
             np.clip(x, -bound * _INSIDE, bound * _INSIDE),
-            self._jacobian,
+            lambda x: self._jacobian(x, stretches, residuals(x.tobytes())),
             bounds=(-bound, bound),
             x_scale='jac',
             ftol=settled,
             xtol=settled,
-            args=(stretches,),
         )
         if not answer.success:
             raise DdctError(f'the fit to the log does not converge: {answer.message}')
@@ -173,9 +180,10 @@ class LogProblem:
             parts.append(left - directions @ (directions.T @ left))
         return np.concatenate([*parts, x / self._unknowns.prior])
 
-    def _jacobian(self, x: np.ndarray, stretches: Sequence[Stretch]) -> np.ndarray:
-        """Return d `_residuals` / d x, by forward differences."""
-        here = self._residuals(x, stretches)
+    def _jacobian(
+        self, x: np.ndarray, stretches: Sequence[Stretch], here: np.ndarray
+    ) -> np.ndarray:
+        """Return d `_residuals` / d x by forward differences, from the residuals at x."""
         moved = [self._residuals(x + step, stretches) for step in _STEP * np.eye(len(x))]
         return (np.column_stack(moved) - here[:, None]) / _STEP
 

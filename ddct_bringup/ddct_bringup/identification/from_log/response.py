@@ -29,6 +29,12 @@ _NOTHING = 1e-12
 """Size of an entry of a mode that counts as zero, over the largest entry."""
 _SMALL, _TERMS = 0.5, 16
 """Size of z up to which phi_2 is a series, and its number of terms, which leave 1e-19."""
+_KEPT = 128
+"""
+Number of places and mode responses that are kept.
+
+The modes are the same while delays alone change, the places while parameters alone do.
+"""
 
 
 def residuals_of(values: Mapping[str, float], stretch: Stretch) -> tuple[np.ndarray, np.ndarray]:
@@ -55,7 +61,6 @@ def responses(values: Mapping[str, float], stretch: Stretch) -> tuple[np.ndarray
     basis = np.zeros((*forced.shape, NUISANCE))
     shifts, lags = shifts_of(values, stretch)
     since = stretch.time_s[:, None] - stretch.time_s[0] - lags
-    places = {shift: _Place.of(stretch, shift) for shift in set(shifts.ravel().tolist())}
     for pole, shape, left, driven in _modes(tuple(values[name] for name in _PARAMETERS)):
         free = np.exp(pole * since)
         basis[:, :, :-1] += np.real((free * shape)[:, :, None] * left)
@@ -63,9 +68,9 @@ def responses(values: Mapping[str, float], stretch: Stretch) -> tuple[np.ndarray
             under_one = since * _phi(pole * since)[0]
             basis[:, :, -1] += np.real(under_one * shape * driven[INPUTS[LOAD]])
         for torque in _present(driven):
-            run = _ModeResponse(pole, stretch, torque)
+            run = _mode_response(pole, stretch, int(torque))
             for output in _present(shape):
-                at = run.at(places[shifts[output, torque]])
+                at = run.at(_place(stretch, float(shifts[output, torque])))
                 forced[:, output] += np.real(shape[output] * driven[torque] * at)
     return forced, basis
 
@@ -128,13 +133,15 @@ class _Place:
     rest_s: Any
     """Time in s from that grid point, (n,); one number where all are equal."""
 
-    @classmethod
-    def of(cls, stretch: Stretch, shift: float) -> '_Place':
-        step = float(stretch.grid_s[1] - stretch.grid_s[0])
-        place = (stretch.time_s + shift - stretch.grid_s[0]) / step
-        before = np.clip(np.floor(place + 1e-6).astype(int), 0, len(stretch.grid_s) - 2)
-        rest = (place - before) * step
-        return cls(before, float(rest[0]) if np.ptp(rest) < 1e-7 * step else rest)
+
+@lru_cache(maxsize=_KEPT)
+def _place(stretch: Stretch, shift: float) -> _Place:
+    """Return the place of a stretch's samples, whose times are shifted in s."""
+    step = float(stretch.grid_s[1] - stretch.grid_s[0])
+    place = (stretch.time_s + shift - stretch.grid_s[0]) / step
+    before = np.clip(np.floor(place + 1e-6).astype(int), 0, len(stretch.grid_s) - 2)
+    rest = (place - before) * step
+    return _Place(before, float(rest[0]) if np.ptp(rest) < 1e-7 * step else rest)
 
 
 class _ModeResponse:
@@ -165,6 +172,11 @@ class _ModeResponse:
         """Return e^(p t), and the weights of the torque's level and of its rise in the time t."""
         phi_1, phi_2 = _phi(self._pole * time_s)
         return 1.0 + self._pole * time_s * phi_1, time_s * phi_1, time_s * phi_2
+
+
+@lru_cache(maxsize=_KEPT)
+def _mode_response(pole: complex, stretch: Stretch, torque: int) -> _ModeResponse:
+    return _ModeResponse(pole, stretch, torque)
 
 
 def _phi(z: Any) -> tuple[Any, Any]:
