@@ -20,7 +20,7 @@ from ddct_bringup.scores.csv_text import signals_csv
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures('each_fit_once')]
 
 CONTROLLED = ['duration_s=3.0', 'control_start_s=0.6', 'reference.slope_rad_s2=114.0']
 """What a drive of the thesis's scenario has of it beside the log."""
@@ -62,7 +62,8 @@ def test_compare_runs_the_car_and_drive_at_once(folder: Path) -> None:
     assert identify(folder, '--out', str(folder / 'mine')) == 0
     files = [f'--{noun}={folder / "mine" / f"drive_{noun}.yaml"}' for noun in ('car', 'drive')]
     out = folder / 'compared'
-    assert compare.main(['--controllers', 'pi,ls8', '--headless', *files, '--out', str(out)]) == 0
+    options = ['--floors', 'none', '--out', str(out)]
+    assert compare.main(['--controllers', 'pi,ls8', '--headless', *files, *options]) == 0
     runs = json.loads((out / 'scores.json').read_text())['runs']
     assert [run['valid'] for run in runs] == [True, True]
     assert {run['scenario'] for run in runs} == {'drive_drive_drive_car'}

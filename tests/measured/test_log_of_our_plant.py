@@ -27,17 +27,36 @@ RADIUS_M, MASS_KG = 0.298, 1310.0
 OTHER_CAR = (f'vehicle.wheel_radius_m={RADIUS_M}', f'vehicle.mass_kg={MASS_KG}')
 
 
+@pytest.fixture(scope='module')
+def pi_bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the bag of a run of the thesis's car."""
+    folder = tmp_path_factory.mktemp('own') / 'pi'
+    record(plan('pi', 'headless', duration_s=3.0), folder)
+    return folder
+
+
+@pytest.fixture(scope='module')
+def other_car(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder with a run of another car, as the bag `pi` and as `pi.csv`."""
+    folder = tmp_path_factory.mktemp('other')
+    recording = record(plan('pi', 'headless', duration_s=3.0, changes=OTHER_CAR), folder / 'pi')
+    (folder / 'pi.csv').write_text(signals_csv(recording))
+    return folder
+
+
 @pytest.mark.parametrize('controller', sampled(['pi', 'ls8'], every=2))
 def test_all_eight_parameters_of_an_exact_log_are_in_their_intervals(
-    tmp_path: Path, controller: str
+    tmp_path: Path, pi_bag: Path, controller: str
 ) -> None:
     """
     The plant holds C_load over 10 ms. As linear it moves c_prim by 69 half-widths of its interval.
 
     A twentieth of the intervals miss by chance, and what is left is the rounding of the log.
     """
-    record(plan(controller, 'headless', duration_s=3.0), tmp_path / controller)
-    log = read_log(tmp_path / controller, own_columns(TIME, *NEEDED), NEEDED)
+    bag = pi_bag if controller == 'pi' else tmp_path / controller
+    if bag != pi_bag:
+        record(plan(controller, 'headless', duration_s=3.0), bag)
+    log = read_log(bag, own_columns(TIME, *NEEDED), NEEDED)
     thesis = load_scenario('thesis')
     fit = fit_log(log, thesis.driveline, drag_of(thesis))
     misses = 0
@@ -50,10 +69,9 @@ def test_all_eight_parameters_of_an_exact_log_are_in_their_intervals(
     assert misses <= 1
 
 
-def test_whole_newton_metres_do_not_determine_the_shaft_while_plates_slip(tmp_path: Path) -> None:
+def test_whole_newton_metres_do_not_determine_the_shaft_while_plates_slip(pi_bag: Path) -> None:
     """Taken as exact, they give J_p 2.4 times and c_sa 1.4 times, with intervals of 15 %."""
-    record(plan('pi', 'headless', duration_s=3.0), tmp_path / 'pi')
-    log = read_log(tmp_path / 'pi', own_columns(TIME, *NEEDED), NEEDED)
+    log = read_log(pi_bag, own_columns(TIME, *NEEDED), NEEDED)
     for name, step in {**dict.fromkeys(SPEEDS, 0.02), **dict.fromkeys(TORQUES, 1.0)}.items():
         log.signals[name] = step * np.round(log.signals[name] / step)
     thesis = load_scenario('thesis')
@@ -64,12 +82,12 @@ def test_whole_newton_metres_do_not_determine_the_shaft_while_plates_slip(tmp_pa
         assert lowest <= thesis.driveline.values()[name] <= highest, name
 
 
-@pytest.mark.parametrize('kind', sampled(['bag', 'csv'], every=2))
+@pytest.mark.parametrize('log_name', sampled(['pi', 'pi.csv'], every=2))
 def test_radius_and_mass_of_another_car_come_from_its_speeds(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], kind: str
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], other_car: Path, log_name: str
 ) -> None:
     """With the radius of `thesis`, .3211 m, the mass would be 1128 kg and A_x 8 % high."""
-    log, out = _log(tmp_path, kind), tmp_path / 'mine'
+    log, out = other_car / log_name, tmp_path / 'mine'
     options = ['--from', str(log), '--out', str(out), '--fix', 'engine_damping']
     assert main([*options, '--json', str(tmp_path / 'fit.json')]) == 0
     content = json.loads((tmp_path / 'fit.json').read_text())
@@ -87,10 +105,10 @@ def test_radius_and_mass_of_another_car_come_from_its_speeds(
 
 
 def test_a_radius_without_the_speed_of_the_car_is_called_an_assumption(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], other_car: Path
 ) -> None:
-    log = _log(tmp_path, 'csv')
-    lines = [line.split(',') for line in log.read_text().splitlines()]
+    log = tmp_path / 'pi.csv'
+    lines = [line.split(',') for line in (other_car / log.name).read_text().splitlines()]
     place = lines[0].index('vehicle_speed_m_s')
     log.write_text('\n'.join(','.join(row[:place] + row[place + 1 :]) for row in lines) + '\n')
     options = ['--from', str(log), '--json', str(tmp_path / 'fit.json'), '--force']
@@ -106,9 +124,9 @@ def test_a_radius_without_the_speed_of_the_car_is_called_an_assumption(
 
 @pytest.mark.parametrize(('given', 'contradicts'), [('0.298', False), ('0.31', True)])
 def test_a_given_radius_is_used_and_one_that_the_log_contradicts_has_a_note(
-    tmp_path: Path, given: str, contradicts: bool
+    tmp_path: Path, other_car: Path, given: str, contradicts: bool
 ) -> None:
-    log, report = _log(tmp_path, 'csv'), tmp_path / 'fit.json'
+    log, report = other_car / 'pi.csv', tmp_path / 'fit.json'
     given_radius = ['--set', f'vehicle.wheel_radius_m={given}']
     assert main(['--from', str(log), '--json', str(report), '--force', *given_radius]) == 0
     content = json.loads(report.read_text())
@@ -117,13 +135,3 @@ def test_a_given_radius_is_used_and_one_that_the_log_contradicts_has_a_note(
     mass = MASS_KG * (RADIUS_M / float(given)) ** 2
     assert content['mass_kg'] == pytest.approx(mass, rel=1e-3)
     assert any('is given, and vehicle_speed' in each for each in content['notes']) == contradicts
-
-
-def _log(folder: Path, kind: str) -> Path:
-    """Return a run of another car, as a bag or as CSV."""
-    recording = record(plan('pi', 'headless', duration_s=3.0, changes=OTHER_CAR), folder / 'pi')
-    if kind == 'bag':
-        return folder / 'pi'
-    file = folder / 'pi.csv'
-    file.write_text(signals_csv(recording))
-    return file

@@ -18,7 +18,7 @@ from ddct_bringup.scores.csv_text import signals_csv
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures('each_fit_once')]
 
 OTHER_CAR = (
     'vehicle.mass_kg=1900',

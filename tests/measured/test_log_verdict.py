@@ -18,7 +18,7 @@ from ddct_bringup.identification.identify import main
 from ddct_bringup.logs.log import SPEEDS
 from ddct_plant.program import progress
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures('each_fit_once')]
 
 
 def identify_into_file(folder: Path, *options: str) -> int:

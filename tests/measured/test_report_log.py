@@ -42,9 +42,14 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def page_of(place: Path, *runs: str, columns: str = 'map.yaml') -> str:
     out = place / 'page.html'
-    given = [str(place / each) for each in runs]
+    given = [str(place / each) for each in runs] + ['--floors', 'none']
     assert report.main([*given, '--columns', str(place / columns), '--out', str(out)]) == 0
     return out.read_text(encoding='utf-8')
+
+
+@pytest.fixture(scope='module')
+def page_of_other_car(folder: Path) -> str:
+    return page_of(folder, 'other.csv', columns='other.yaml')
 
 
 def visible(page: str) -> str:
@@ -72,9 +77,9 @@ def lines(page: str) -> Iterator[tuple[str, str, np.ndarray]]:
 
 
 def test_every_chart_of_a_log_has_a_line_and_the_measured_torques_are_among_them(
-    folder: Path,
+    page_of_other_car: str,
 ) -> None:
-    page = page_of(folder, 'other.csv', columns='other.yaml')
+    page = page_of_other_car
     drawn = {chart: values for chart, name, values in lines(page) if name}
     titles = re.findall(r'id="chart-(\w+)"', page)
     assert set(titles) == set(drawn) == {'w_d', 'A_x', 'C_m', 'w_m', 'C_f_transmitted'}
@@ -85,8 +90,8 @@ def test_every_chart_of_a_log_has_a_line_and_the_measured_torques_are_among_them
     assert np.ptp(drawn['C_f_transmitted']) == pytest.approx(np.ptp(wanted), rel=0.01)
 
 
-def test_the_reasons_on_the_page_of_a_log_are_those_of_a_log(folder: Path) -> None:
-    text = visible(page_of(folder, 'other.csv', columns='other.yaml'))
+def test_the_reasons_on_the_page_of_a_log_are_those_of_a_log(page_of_other_car: str) -> None:
+    text = visible(page_of_other_car)
     before, _, _ = text.partition('Definitions Reading the tables')
     for reason in (
         'a log has no phases of the plates',

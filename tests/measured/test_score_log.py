@@ -14,6 +14,7 @@ from support.other_car import COLUMNS, LASTS_S, TRUE, drive, write_csv
 from support.runs import plan, record
 
 from ddct_bringup.bag.measured_run import read_measured_run
+from ddct_bringup.bag.recording import Recording
 from ddct_bringup.logs.columns import load_columns
 from ddct_bringup.metrics.catalogue import METRICS, NEEDED_BY
 from ddct_bringup.programs import report, score
@@ -53,10 +54,23 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def scored(folder: Path, *options: str) -> dict[str, Any]:
+@pytest.fixture(scope='module')
+def own_run(tmp_path_factory: pytest.TempPathFactory) -> Recording:
+    return record(plan('pi', 'headless', duration_s=3.0), tmp_path_factory.mktemp('own') / 'pi')
+
+
+@pytest.fixture
+def own_log(own_run: Recording, tmp_path: Path) -> Path:
+    """Return a folder with that run as the log of another tool, and its column map."""
+    (tmp_path / 'drive.csv').write_text(signals_csv(own_run))
+    (tmp_path / 'map.yaml').write_text(OURS)
+    return tmp_path
+
+
+def scored(folder: Path, *options: str, columns: str = 'map.yaml') -> dict[str, Any]:
     out = folder / 'scores.json'
-    columns = ['--columns', str(folder / 'map.yaml')]
-    code = score.main([str(folder / 'drive.csv'), *columns, '--json', str(out), *options])
+    given = [str(folder / 'drive.csv'), '--columns', str(folder / columns)]
+    code = score.main([*given, '--json', str(out), *options])
     (run,) = json.loads(out.read_text())['runs']
     assert code == (0 if run['valid'] else 1)
     return run
@@ -68,14 +82,14 @@ def values_of(run: Mapping[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in values.items() if key != 'least_is_bound'}
 
 
-def test_our_own_signals_as_a_foreign_log_have_the_scores_of_the_bag(tmp_path: Path) -> None:
-    recording = record(plan('pi', 'headless', duration_s=3.0), tmp_path / 'pi')
-    assert recording.settings is not None
-    ratio = recording.settings.scenario.driveline.gear.total_ratio
-    (tmp_path / 'drive.csv').write_text(signals_csv(recording))
-    (tmp_path / 'map.yaml').write_text(OURS.replace('run: {', f'run: {{total_ratio: {ratio!r}, '))
-    scores = score_recording(recording, 'pi', packaged_limits()).scores
-    found, wanted = scored(tmp_path), to_json(run_entry(scores))
+def test_our_own_signals_as_a_foreign_log_have_the_scores_of_the_bag(
+    own_run: Recording, own_log: Path
+) -> None:
+    assert own_run.settings is not None
+    ratio = own_run.settings.scenario.driveline.gear.total_ratio
+    (own_log / 'map.yaml').write_text(OURS.replace('run: {', f'run: {{total_ratio: {ratio!r}, '))
+    scores = score_recording(own_run, 'pi', packaged_limits()).scores
+    found, wanted = scored(own_log), to_json(run_entry(scores))
     of_plant = {
         'friction_work_over_least': 'a log has no inertias of the car',
         'driving_acceleration_m_s2': 'the plant is not known',
@@ -90,9 +104,9 @@ def test_our_own_signals_as_a_foreign_log_have_the_scores_of_the_bag(tmp_path: P
             same = None if value is None else pytest.approx(value, rel=1e-9)
             assert theirs[name] == same, name
     assert (found['state'], found['why']) == (wanted['state'], wanted['why'])
-    log = read_measured_run(tmp_path / 'drive.csv', load_columns(str(tmp_path / 'map.yaml')))
+    log = read_measured_run(own_log / 'drive.csv', load_columns(str(own_log / 'map.yaml')))
     np.testing.assert_allclose(
-        log.trajectory.joint_speed[:, 3], recording.trajectory.joint_speed[:, 3], atol=1e-9
+        log.trajectory.joint_speed[:, 3], own_run.trajectory.joint_speed[:, 3], atol=1e-9
     )
     assert (found['mode'], found['scenario'], found['controller']) == ('measured', 'bench', 'pi')
 
@@ -147,15 +161,12 @@ def test_every_name_of_what_needs_a_quantity_is_a_metric() -> None:
 @pytest.mark.parametrize(
     'column', ['vehicle_accel', 'clutch_torque', 'engine_torque', 'torque_demand']
 )
-def test_each_value_that_is_lost_with_a_column_has_a_reason(tmp_path: Path, column: str) -> None:
-    (tmp_path / 'drive.csv').write_text(
-        signals_csv(record(plan('pi', 'headless', duration_s=3.0), tmp_path / 'pi'))
-    )
-    (tmp_path / 'map.yaml').write_text(OURS)
-    whole = scored(tmp_path)
-    (tmp_path / 'map.yaml').write_text(re.sub(f'  {column}: .*\n', '', OURS))
-    without = scored(tmp_path)
-    before, after = values_of(whole), values_of(without)
+def test_each_value_that_is_lost_with_a_column_has_a_reason(own_log: Path, column: str) -> None:
+    before = values_of(scored(own_log))
+    fewer = re.sub(f'  {column}: .*\n', '', OURS)
+    (own_log / 'fewer.yaml').write_text(fewer)
+    without = scored(own_log, columns='fewer.yaml')
+    after = values_of(without)
     lost = [name for name in before if before[name] is not None and after[name] is None]
     assert lost
     assert all(without['null_reasons'][name] == f'the log has no {column}' for name in lost)

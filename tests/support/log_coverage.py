@@ -7,12 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_bringup.identification.from_log.base_car import drag_of
 from ddct_bringup.identification.from_log.fit import fit_log
 from ddct_bringup.logs.log import MeasuredLog
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.scenario.file import load_scenario
-from support.logs import NONE_LATE, drag, noisy_log, noisy_log_of, rows_late, within
+from support.logs import NONE_LATE, drag, late_fit, noisy_log_of, within
 from support.other_car import TRUE, late_log
 
 BEFORE = {
@@ -50,8 +49,7 @@ def _held(kind: str, seed: int, pi_log: MeasuredLog) -> dict[str, bool]:
     if kind == 'late signal':
         thesis = load_scenario('thesis')
         true = thesis.driveline.values() | NONE_LATE | {'clutch_torque': 0.01}
-        log = rows_late(noisy_log(pi_log, seed), ('clutch_torque',), 1)
-        fit = fit_log(log, thesis.driveline, drag_of(thesis))
+        fit = late_fit(pi_log, seed, ('clutch_torque',), 1)
     else:
         random = np.random.default_rng(seed)
         late = dict(zip(NONE_LATE, random.uniform(-0.05, 0.05, 4).tolist(), strict=True))

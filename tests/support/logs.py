@@ -4,6 +4,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -113,6 +114,14 @@ def rows_late(log: MeasuredLog, names: Sequence[str], rows: int) -> MeasuredLog:
     return replace(log, time_s=log.time_s[rows:], signals=signals)
 
 
+@cache
+def late_fit(log: MeasuredLog, seed: int, late: tuple[str, ...], rows: int) -> LogFit:
+    """Return the fit to a log of the thesis's car with noise, and with signals rows late."""
+    thesis = load_scenario('thesis')
+    noisy = rows_late(noisy_log(log, seed), late, rows)
+    return fit_log(noisy, thesis.driveline, drag_of(thesis))
+
+
 def require_delays_alone(
     log: MeasuredLog, late: Sequence[str], rows: int, true: dict[str, float]
 ) -> None:
@@ -122,10 +131,7 @@ def require_delays_alone(
     Of 24 intervals 23 are expected. Without fitted delays it is 16 of 54 parameters.
     """
     thesis = load_scenario('thesis')
-    fits = [
-        fit_log(rows_late(noisy_log(log, seed), late, rows), thesis.driveline, drag_of(thesis))
-        for seed in (1, 2)
-    ]
+    fits = [late_fit(log, seed, tuple(late), rows) for seed in (1, 2)]
     assert sum(sum(within(fit, thesis.driveline.values() | true)) for fit in fits) >= 21
     for fit in fits:
         assert fit.delays['clutch_torque'] == pytest.approx(true['clutch_torque'], abs=1e-3)
