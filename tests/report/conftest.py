@@ -11,6 +11,7 @@ from report.headless_chromium import Browser, Visitor
 from support.runs import plan, record
 
 from ddct_bringup.programs.report import main
+from ddct_bringup.report import front_view
 from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_plant.files.json_records import write_json
@@ -30,6 +31,14 @@ def demo(tmp_path_factory: pytest.TempPathFactory) -> Path:
     conditions = replace(evidence.conditions, scenario_digest=scenario_digest(settings.scenario))
     write_json(str(folder / FREQUENCY_FILE), replace(evidence, conditions=conditions))
     return folder
+
+
+@pytest.fixture(scope='session', autouse=True)
+def few_points_of_the_front() -> Iterator[None]:
+    """Draw the front through two points beside the runs: each takes half a second to compute."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(front_view, '_POINTS', 2)
+        yield
 
 
 @pytest.fixture(scope='session')

@@ -10,6 +10,7 @@ from importlib.resources import files
 from pathlib import Path
 
 import pytest
+from drawn_charts import leave_out_time_charts
 from page_reader import PageReader
 from support.runs import plan, record
 
@@ -28,6 +29,12 @@ WITHOUT = ('time_to_final_lock_s', 'releases', 'peak_temperature_degc', 'worst_l
 """Metrics that no run in lock-step with a linear clutch has."""
 NO_FLOORS = ('--floors', 'none')
 """Options of reports on other subjects; floors take longer than the rest of a page."""
+
+
+@pytest.fixture
+def without_charts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave out the charts over time, which take longer than the texts and tables of a page."""
+    leave_out_time_charts(monkeypatch)
 
 
 def scores_of(folder: Path, capsys: pytest.CaptureFixture[str]) -> list[dict]:
@@ -70,6 +77,7 @@ def test_the_text_shows_the_rounded_numbers_and_the_thesis_s(page: Path) -> None
         assert printed in reader.text
 
 
+@pytest.mark.usefixtures('without_charts')
 def test_a_predicted_value_is_a_hit_or_a_miss(tmp_path: Path) -> None:
     record(plan('mpc3', 'headless', duration_s=3.0), tmp_path / 'mpc3')
     out = tmp_path / 'report.html'
@@ -80,6 +88,7 @@ def test_a_predicted_value_is_a_hit_or_a_miss(tmp_path: Path) -> None:
     assert 'a hit is within 25 % of the print' in text
 
 
+@pytest.mark.usefixtures('without_charts')
 def test_the_page_judges_by_the_limits_that_are_given(demo: Path, tmp_path: Path) -> None:
     mine, out = tmp_path / 'mine.yaml', tmp_path / 'report.html'
     text = (files('ddct_bringup.verdict') / 'limits.yaml').read_text(encoding='utf-8')
@@ -103,6 +112,7 @@ def test_bad_limits_are_named_before_anything_is_read(tmp_path: Path, capsys) ->
     )
 
 
+@pytest.mark.usefixtures('without_charts')
 def test_the_header_lists_the_changes_of_the_packaged_scenario(page: Path, tmp_path: Path) -> None:
     record(plan('pi', 'headless', duration_s=1.0), tmp_path / 'pi')
     out = tmp_path / 'report.html'
@@ -187,6 +197,7 @@ def test_runs_of_several_scenarios_are_refused_and_named(
     assert not out.exists()
 
 
+@pytest.mark.usefixtures('without_charts')
 def test_labels_distinguish_wear_gains_and_architectures_of_one_scenario(
     demo: Path, tmp_path: Path
 ) -> None:
@@ -203,6 +214,7 @@ def test_labels_distinguish_wear_gains_and_architectures_of_one_scenario(
         assert label in text
 
 
+@pytest.mark.usefixtures('without_charts')
 def test_the_same_bag_named_twice_is_one_run(demo: Path, tmp_path: Path) -> None:
     out = tmp_path / 'report.html'
     assert (
@@ -240,6 +252,7 @@ def marked_evidence(demo: Path) -> dict:
     return evidence
 
 
+@pytest.mark.usefixtures('without_charts')
 def test_evidence_beside_the_bags_is_taken(
     demo: Path, marked_evidence: dict, tmp_path: Path
 ) -> None:
@@ -248,6 +261,7 @@ def test_evidence_beside_the_bags_is_taken(
     assert 'Computed for this page' not in text
 
 
+@pytest.mark.usefixtures('without_charts')
 @pytest.mark.parametrize('change', [of_another_scenario, at_another_wear_gain])
 def test_evidence_of_another_loop_is_not_taken(
     demo: Path, marked_evidence: dict, tmp_path: Path, change: Callable[[dict], None]
@@ -276,6 +290,7 @@ def test_a_page_that_cannot_be_written_is_refused_before_work(
     assert (tmp_path / 'notes.txt').read_text(encoding='utf-8') == 'mine'
 
 
+@pytest.mark.usefixtures('without_charts')
 def test_an_earlier_page_of_ours_is_replaced(demo: Path, page: Path, tmp_path: Path) -> None:
     out = tmp_path / 'report.html'
     shutil.copy(page, out)
@@ -309,6 +324,7 @@ def test_without_the_chart_library_the_program_names_the_package_to_install(
     )
 
 
+@pytest.mark.usefixtures('without_charts')
 def test_the_page_goes_to_standard_output_on_request(
     demo: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -316,6 +332,7 @@ def test_the_page_goes_to_standard_output_on_request(
     assert capsys.readouterr().out.startswith('<!DOCTYPE html>')
 
 
+@pytest.mark.usefixtures('without_charts')
 def test_a_controller_that_fell_back_is_named(tmp_path, capsys):
     """The scores of such a run are not those of the controller's own program."""
     changes = ['controllers.mpc3.iteration_limit=1', 'controllers.mpc3.highest_torque_n_m=300']

@@ -5,7 +5,9 @@
 import csv
 import json
 from collections import defaultdict
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
@@ -18,7 +20,7 @@ from ddct_bringup.reproduction.numbers.command import SOURCES, compute
 from ddct_bringup.reproduction.numbers.gate import GateRow, NumbersDocument, judge
 from ddct_bringup.reproduction.numbers.gate_tables import page_tables
 from ddct_bringup.reproduction.numbers.number_files import thesis_numbers
-from ddct_bringup.reproduction.numbers.thesis_number import VERDICTS
+from ddct_bringup.reproduction.numbers.thesis_number import VERDICTS, Value
 from ddct_bringup.thesis.table_5_1 import THESIS_TABLE
 from ddct_controllers.mpc.costs import TABLE_4_1, TwoInputCost
 from ddct_controllers.printed import PRINTED_CONTROLLERS
@@ -33,8 +35,26 @@ NUMBERS = thesis_numbers()
 
 
 @pytest.fixture(scope='module')
-def rows() -> tuple[GateRow, ...]:
-    return judge(NUMBERS, compute(SOURCES))
+def computed() -> Mapping[str, Value | None]:
+    return compute(SOURCES)
+
+
+@pytest.fixture(scope='module')
+def rows(computed: Mapping[str, Value | None]) -> tuple[GateRow, ...]:
+    return judge(NUMBERS, computed)
+
+
+@pytest.fixture
+def computed_once(computed: Mapping[str, Value | None], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let the program take the numbers of all its sources, computed once for this file."""
+
+    def shared(
+        sources: Mapping[str, Any], progress: Callable[[str], None]
+    ) -> Mapping[str, Value | None]:
+        assert sources is SOURCES
+        return computed
+
+    monkeypatch.setattr(command, 'compute', shared)
 
 
 def test_every_claim_about_a_printed_number_holds(rows: tuple[GateRow, ...]) -> None:
@@ -181,6 +201,7 @@ def test_program_writes_every_number_as_json_alone(
     assert {number['verdict'] for number in content['numbers']} <= {*VERDICTS}
 
 
+@pytest.mark.usefixtures('computed_once')
 def test_program_writes_the_same_numbers_as_csv(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], rows: tuple[GateRow, ...]
 ) -> None:
@@ -196,6 +217,7 @@ def test_program_writes_the_same_numbers_as_csv(
     assert 'there is no folder' in capsys.readouterr().err
 
 
+@pytest.mark.usefixtures('computed_once')
 def test_program_prints_the_tables_of_chapters_without_reasons(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
@@ -207,6 +229,7 @@ def test_program_prints_the_tables_of_chapters_without_reasons(
     require_reasons(printed.splitlines())
 
 
+@pytest.mark.usefixtures('computed_once')
 def test_section_shows_one_table_with_the_reasons_of_its_misses_and_json_has_its_numbers_alone(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
