@@ -45,10 +45,18 @@ def two_panels():
     return figure
 
 
-def test_the_data_are_the_labelled_lines_under_headings_with_units(tmp_path):
+@pytest.fixture(scope='module')
+def saved(tmp_path_factory):
+    """Return a folder with the files of two figures that are the same."""
+    folder = tmp_path_factory.mktemp('saved')
     with chart_style():
-        save_figure(two_panels(), tmp_path, 'both')
-    rows = list(csv.reader((tmp_path / 'both.csv').read_text(encoding='utf-8').splitlines()))
+        for name in ('first', 'second'):
+            save_figure(two_panels(), folder, name)
+    return folder
+
+
+def test_the_data_are_the_labelled_lines_under_headings_with_units(saved):
+    rows = list(csv.reader((saved / 'first.csv').read_text(encoding='utf-8').splitlines()))
     assert rows[0] == [
         'speed: pi and ls8: Time, s',
         'speed: pi: w_d, rpm',
@@ -61,14 +69,11 @@ def test_the_data_are_the_labelled_lines_under_headings_with_units(tmp_path):
     assert rows[3] == ['0.5', '0.25', '0.125', '', '', '0.5', '1']
 
 
-def test_the_same_figure_gives_the_same_files(tmp_path):
-    with chart_style():
-        for name in ('first', 'second'):
-            save_figure(two_panels(), tmp_path, name)
-    first, second = (figure_files(tmp_path, name) for name in ('first', 'second'))
+def test_the_same_figure_gives_the_same_files(saved):
+    first, second = (figure_files(saved, name) for name in ('first', 'second'))
     assert [file.read_bytes() for file in first] == [file.read_bytes() for file in second]
     assert first[1].read_text(encoding='utf-8').startswith('<?xml')
-    assert sorted(tmp_path.iterdir()) == sorted([*first, *second])
+    assert sorted(saved.iterdir()) == sorted([*first, *second])
 
 
 def test_a_reference_across_the_panel_is_no_data():
