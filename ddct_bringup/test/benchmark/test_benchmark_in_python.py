@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from small_benchmark import use_small_release
+from small_tuning import leave_out_pictures
 
 from ddct_bringup.api import DdctError, benchmark, document
 from ddct_bringup.benchmark.file_names import RESULT
@@ -25,6 +26,7 @@ discretisation: hold
 def test_the_table_has_the_shares_and_medians_of_the_result_in_its_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    leave_out_pictures(monkeypatch)
     use_small_release(tmp_path, monkeypatch)
     (tmp_path / 'gain.yaml').write_text(GAIN, encoding='utf-8')
     found = benchmark(str(tmp_path / 'gain.yaml'), tmp_path / 'mine', workers=1)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from small_benchmark import content_of, judge, result_in
+from small_tuning import leave_out_pictures
 from verified import states, verified
 
 from ddct_bringup.benchmark import cases
@@ -40,6 +41,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     car = folder / 'cars' / 'mine.yaml'
     car.write_text('base: bases/small.yaml\nvehicle: {mass_kg: 1000}\n', encoding='utf-8')
     with pytest.MonkeyPatch.context() as patch:
+        leave_out_pictures(patch)
         patch.setattr(cases, 'packaged_folder', lambda: packaged)
         assert judge(folder / 'first', 'ls4', '--car', str(car)) == 0
         yield folder

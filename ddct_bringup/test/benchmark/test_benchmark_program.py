@@ -24,6 +24,7 @@ from small_benchmark import (
     result_in,
     use_release,
 )
+from small_tuning import leave_out_pictures
 from verified import copied, edit_json_with_digest, edit_manifest, states, verified
 
 from ddct_bringup.benchmark.cases import Cases
@@ -61,6 +62,11 @@ class Fails(Controller):
     def update(self, measurement):
         raise ValueError('it has no law')
 """
+
+
+@pytest.fixture
+def no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    leave_out_pictures(monkeypatch)
 
 
 @pytest.mark.nightly
@@ -250,6 +256,7 @@ def test_any_altered_byte_of_a_benchmark_is_found(place: Path) -> None:
     assert lost == dict.fromkeys(files, [])
 
 
+@pytest.mark.usefixtures('no_pictures')
 def test_a_quick_benchmark_by_the_seed_of_a_judge_is_marked_and_has_no_dominance(
     place: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -269,6 +276,7 @@ def test_a_quick_benchmark_by_the_seed_of_a_judge_is_marked_and_has_no_dominance
     assert not (tmp_path / 'judged' / 'ls8' / 'development').exists()
 
 
+@pytest.mark.usefixtures('no_pictures')
 def test_a_controller_that_fails_in_every_case_is_one_line_and_its_rows_stay(
     place: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -281,6 +289,7 @@ def test_a_controller_that_fails_in_every_case_is_one_line_and_its_rows_stay(
     assert result_in(out)['controllers'][0]['held_out']['groups'][0]['invalid'] == 2
 
 
+@pytest.mark.usefixtures('no_pictures')
 def test_rows_of_the_release_that_other_code_computed_are_named_wherever_the_result_is_read(
     place: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

@@ -53,7 +53,7 @@ def tuning(controller: str = 'pi', folder: Path | None = None, **changes: Any) -
 
 
 def leave_out_pictures(patch: pytest.MonkeyPatch) -> None:
-    """Draw no figure on the pages of tunings, which takes half of the time of a small one."""
+    """Draw no chart on pages of tunings and benchmarks, half of the time of a small one."""
     patch.setattr('ddct_bringup.documents.bokeh_charts.draw_chart', lambda chart: [])
 
 

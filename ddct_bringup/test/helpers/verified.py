@@ -69,6 +69,7 @@ def leave_out_charts(patch: pytest.MonkeyPatch) -> None:
     """Draw no chart on pages of runs and campaigns, which takes most of the time of small ones."""
     draw_here(patch)
     leave_out_time_charts(patch)
+    patch.setattr('ddct_bringup.report.page.pareto_view', lambda runs: None)
     patch.setattr(document, '_charts', lambda *_: iter(()))
 
 

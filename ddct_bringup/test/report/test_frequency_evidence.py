@@ -7,6 +7,8 @@ import json
 
 import numpy as np
 import pytest
+from drawn_charts import leave_out_time_charts
+from drawn_here import draw_here
 from linear_controllers import LINEAR
 from samples import sampled
 
@@ -86,7 +88,9 @@ def test_the_sampled_loop_has_the_actuator_of_the_run(delay_s):
     require_run_as_the_loop('ls8', RunSettings(KnownSettings(load_scenario('thesis', changes))))
 
 
-def test_compare_leaves_the_evidence_beside_the_scores(tmp_path):
+def test_compare_leaves_the_evidence_beside_the_scores(tmp_path, monkeypatch):
+    draw_here(monkeypatch)
+    leave_out_time_charts(monkeypatch)
     out = tmp_path / 'out'
     options = ['--wear-gain', '0.8', '--floors', 'none', '--headless', '--out', str(out)]
     assert compare.main(['--controllers', 'ls8,pi', *options]) == 0
