@@ -97,7 +97,7 @@ def runs(every):
     drawings = [
         (name, handover, part) for name in SHIFTS for handover in HANDOVERS for part in PARTS
     ]
-    return [drawn(random, *each) for each in drawings[::every]]
+    return [drawn(random, *each, duration_s=1.8) for each in drawings[::every]]
 
 
 @pytest.fixture(scope='module')

@@ -80,7 +80,7 @@ def random_program(random):
     )
 
 
-@pytest.mark.parametrize('seed', sampled(range(200), every=5))
+@pytest.mark.parametrize('seed', sampled(range(200), every=10))
 def test_any_multipliers_bound_the_optimum_and_those_of_the_solver_attain_it(seed):
     random = np.random.default_rng(seed)
     program = random_program(random)
@@ -136,7 +136,7 @@ def test_late_rows_of_a_peak_count_where_the_peak_is_late():
     assert solution.certificate.claim == pytest.approx(2.0, abs=1e-6)
 
 
-@pytest.mark.parametrize('seed', range(20))
+@pytest.mark.parametrize('seed', sampled(range(20), every=2))
 def test_without_a_point_the_multipliers_at_the_least_violation_are_a_ray(seed):
     program = random_program(np.random.default_rng(seed))
     beyond = replace(
@@ -179,7 +179,7 @@ def test_a_ray_that_excludes_nothing_is_refused():
     assert certified(RAY, program, rows, np.zeros(1)).claim == 0.0
 
 
-@pytest.mark.parametrize('seed', range(20))
+@pytest.mark.parametrize('seed', sampled(range(20), every=2))
 def test_huge_multipliers_that_cancel_prove_nothing_by_rounding(seed):
     """Rows and their mirror images cancel, and no bound above the cost of a point is left."""
     random = np.random.default_rng(seed)
@@ -216,7 +216,7 @@ def test_a_kept_variable_that_excludes_all_points_is_let_go():
     assert solution.certificate.claim == pytest.approx(0.5, abs=1e-6)
 
 
-@pytest.mark.parametrize('seed', range(20))
+@pytest.mark.parametrize('seed', sampled(range(20), every=2))
 def test_both_methods_of_the_solver_find_the_same_optimum(seed, monkeypatch):
     program = random_program(np.random.default_rng(seed))
     found = []
