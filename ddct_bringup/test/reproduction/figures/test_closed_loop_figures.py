@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from samples import sampled
 from tight_tolerance import tight_tolerance_run
 
 from ddct_bringup.metrics.metric import Metrics
@@ -48,13 +49,16 @@ def lines(axes: 'Axes') -> dict[str, np.ndarray]:
 
 @pytest.mark.parametrize(
     ('number', 'architecture', 'shown', 'unit'),
-    [
-        ('2.26', 'detailed', (*LS4_TO_9, 'pi'), 'w_d, rpm'),
-        ('2.15', 'feedforward', LS4_TO_9, 'w_sr, rpm'),
-        ('2.22', 'feedforward_tanh', LS4_TO_9, 'A_x, m/s²'),
-        ('4.3', 'detailed', ('mpc3', 'mpc2', 'mpc1'), 'w_d, rpm'),
-        ('4.8', 'detailed', ('mpc4',), 'A_x, m/s²'),
-    ],
+    sampled(
+        [
+            ('4.3', 'detailed', ('mpc3', 'mpc2', 'mpc1'), 'w_d, rpm'),
+            ('2.26', 'detailed', (*LS4_TO_9, 'pi'), 'w_d, rpm'),
+            ('2.15', 'feedforward', LS4_TO_9, 'w_sr, rpm'),
+            ('2.22', 'feedforward_tanh', LS4_TO_9, 'A_x, m/s²'),
+            ('4.8', 'detailed', ('mpc4',), 'A_x, m/s²'),
+        ],
+        every=2,
+    ),
 )
 def test_run_figure_contains_the_signal_of_the_run_from_0_5_s(number, architecture, shown, unit):
     axes = drawing(number)[0].axes[0]
