@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 from docutils import nodes
 from latex2mathml.converter import convert
 from sphinx import addnodes
+from sphinx.search.en import SearchEnglish
 
 from website.staging import ROOT
 
@@ -27,6 +28,7 @@ myst_fence_as_directive = ['math']
 default_role = 'code'
 autodoc_typehints = 'description'
 autodoc_class_signature = 'separated'
+smartquotes = False  # a page shows what is written
 suppress_warnings = ['myst.header']
 
 
@@ -38,6 +40,19 @@ def _inline(translator: Any, node: nodes.math) -> None:
 def _display(translator: Any, node: nodes.math_block) -> None:
     translator.body.append(f'<div class="math">{convert(node.astext(), display="block")}</div>\n')
     raise nodes.SkipNode
+
+
+class _English(SearchEnglish):
+    """The language of the search, in which each word is stemmed once."""
+
+    def __init__(self, options: dict[str, str]) -> None:
+        super().__init__(options)
+        self._stems: dict[str, str] = {}
+
+    def stem(self, word: str) -> str:
+        if word not in self._stems:
+            self._stems[word] = super().stem(word)
+        return self._stems[word]
 
 
 def _skipped(app: Any, what: str, name: str, *rest: Any) -> bool | None:
@@ -78,5 +93,6 @@ def setup(app: Any) -> None:
     The sidebar is made before the theme asks for it, at a fourth of the time of the whole site.
     """
     app.add_html_math_renderer('mathml', (_inline, None), (_display, None))
+    app.add_search_language(_English)
     app.connect('autodoc-skip-member', _skipped)  # what a named tuple is made by
     app.connect('html-page-context', _sidebar_of_titles, priority=400)
