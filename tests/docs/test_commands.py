@@ -30,12 +30,10 @@ SAMPLE = sample_of(BLOCKS)
 RUNS = 'ddct compare --'
 
 
+@pytest.mark.usefixtures('no_page')
 @pytest.mark.parametrize('block', SAMPLE, ids=label)
-def test_each_program_runs_as_a_page_shows(
-    block: Block, shared_runs: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Pages are without the front, seconds for a case: ddct_bringup/test/report draws it."""
-    monkeypatch.setattr('ddct_bringup.report.page.front_view', lambda *_: None)
+def test_each_program_runs_as_a_page_shows(block: Block, shared_runs: Path) -> None:
+    """The report that they end with is drawn in tests/report and ddct_bringup/test/report."""
     for line in commands_of(block):
         assert run_here(line) == 0, line
 

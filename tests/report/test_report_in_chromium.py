@@ -4,11 +4,12 @@
 
 import json
 import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import pytest
 from report.headless_chromium import PRINT, Visitor, chromium
-from samples import sampled
 from support.runs import plan, record
 
 from ddct_bringup.bag.trajectory_bag import write_trajectory
@@ -39,6 +40,10 @@ SHOWN_LINES = """Bokeh.documents[0].roots().flatMap((chart) => chart.renderers)
   .filter((line) => line.name && line.visible).length"""
 
 
+OVERFLOW = 'document.documentElement.scrollWidth - innerWidth'
+LINE_COLOUR = 'Bokeh.documents[0].roots()[0].renderers[0].glyph.line_color.value'
+BODY_COLOUR = 'getComputedStyle(document.body).backgroundColor'
+SWITCH_COLOURS = "document.getElementById('theme').click()"
 PHONE_PX = 390
 LONG_NAMES = ('my_first_predictive_controller', 'a_controller_whose_name_has_fifty_letters_or_so')
 MOST_PAGES = 4
@@ -46,6 +51,92 @@ OUTSIDE = """[...document.querySelectorAll('body *')].filter((each) => {
   const box = each.getBoundingClientRect();
   return box.width && (box.right > 390.5 || box.left < -0.5) && !each.closest('.scroll');
 }).map((each) => each.className || each.tagName)"""
+
+
+POINT = """((name, share) => {
+  const chart = Bokeh.documents[0].roots().find((each) => each.name === name);
+  const {el, frame} = [...Bokeh.index].find((each) => each.model === chart);
+  const line = chart.renderers.find((each) => each.name === 'ls8');
+  const {t, [name]: values} = line.data_source.data;
+  const sample = Math.round(share * t.length);
+  el.scrollIntoView({block: 'center'});
+  return new Promise((done) => setTimeout(() => {
+    const {left, top} = el.getBoundingClientRect();
+    const [clientX, clientY] = [left + frame.x_scale.compute(t[sample]),
+      top + frame.y_scale.compute(values[sample]) - OFF];
+    el.dispatchEvent(new PointerEvent('pointermove', {clientX, clientY, bubbles: true}));
+    const tip = document.getElementById('tip');
+    done([tip.hidden, tip.innerText, t[sample], values[sample]]);
+  }, 100));
+})('w_sr', 0.25)"""
+POINTED = (
+    POINT.replace('OFF', '0'),
+    "dispatchEvent(new Event('scroll'))",
+    "document.getElementById('tip').hidden",
+    POINT.replace('OFF', '-150'),
+)
+HEIGHTS = """new Promise((done) => {
+  const look = () => {
+    const ends = Bokeh.documents[0].roots().map((chart) => chart.y_range.end);
+    if (ends.every(Number.isFinite)) done(ends); else setTimeout(look, 10);
+  };
+  look();
+})"""
+SWITCHED = (
+    *(HEIGHTS, SHOWN_LINES, "document.querySelector('.chip').click()", SHOWN_LINES),
+    "document.getElementById('count').textContent",
+    *("document.querySelector('[data-show=none]').click()", SHOWN_LINES),
+    *("document.querySelector('[data-show=all]').click()", SHOWN_LINES, HEIGHTS),
+)
+ORDER = """[...document.querySelectorAll('.summary tbody th .run')].map((run) =>
+  run.textContent.trim())"""
+ENTER = """document.querySelectorAll('.summary .sort')[1].dispatchEvent(
+  new KeyboardEvent('keydown', {key: 'Enter', bubbles: true, cancelable: true}))"""
+SORTED = (
+    *(ORDER, "document.querySelectorAll('.summary .sort')[1].click()", ORDER, ENTER, ORDER),
+    "document.querySelectorAll('thead button').length",
+)
+POINTS = """(() => {
+  const {below, left, renderers: [{data_source: {data}}]} =
+    Bokeh.documents[0].roots().find((chart) => chart.name === 'pareto');
+  return [['x', 'y', 'ring'].map((name) => [...data[name]]),
+    [below[0].axis_label, left[0].axis_label]];
+})()"""
+CHOOSE = """['peak_jerk_m_s3', 'friction_work_j'].forEach((name, index) => {
+  const select = document.querySelectorAll('.pareto-choice select')[index];
+  select.value = name;
+  select.dispatchEvent(new Event('change'));
+})"""
+COLOURS = (LINE_COLOUR, BODY_COLOUR)
+Values = Mapping[str, list[Any]]
+"""Values of scripts by what they are about."""
+
+
+def values_by_subject(
+    scripts: Mapping[str, Sequence[str]], visit: Visitor, page: Path, **screen: Any
+) -> Values:
+    """Return what scripts on several subjects give, in one visit without error or request."""
+    every = [script for each in scripts.values() for script in each]
+    visited = visit(page, **screen, scripts=every)
+    assert visited.errors == []
+    assert {request.partition(':')[0] for request in visited.requests} <= {'file', 'data', 'blob'}
+    values = iter(visited.values)
+    return {subject: [next(values) for _ in each] for subject, each in scripts.items()}
+
+
+@pytest.fixture(scope='module')
+def dark(page: Path, visit: Visitor) -> Values:
+    """Return what one visit with a dark phone gives, for several tests."""
+    scripts = {'painted': (COUNT_PAINTED, OVERFLOW), 'colours': COLOURS, 'pointed': POINTED}
+    return values_by_subject(scripts, visit, page, width=PHONE_PX, scheme='dark')
+
+
+@pytest.fixture(scope='module')
+def light(page: Path, visit: Visitor) -> Values:
+    """Return what one visit with a light screen gives; the colours are switched last."""
+    scripts = {'switched': SWITCHED, 'sorted': SORTED, 'chosen': (POINTS, CHOOSE, POINTS)}
+    scripts |= {'colours': (*COLOURS, SWITCH_COLOURS, SWITCH_COLOURS, *COLOURS)}
+    return values_by_subject(scripts, visit, page)
 
 
 @pytest.fixture(scope='module')
@@ -74,17 +165,22 @@ def launch(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
-@pytest.mark.parametrize(
-    ('width', 'scheme'), sampled([(390, 'dark'), (1920, 'dark'), (1280, 'light')], every=3)
-)
-def test_the_page_draws_every_chart_without_error_or_request(
+@pytest.mark.nightly
+@pytest.mark.parametrize(('width', 'scheme'), [(1920, 'dark'), (1280, 'light')])
+def test_the_page_draws_every_chart_on_a_screen(
     page: Path, width: int, scheme: str, visit: Visitor
 ) -> None:
-    overflow = 'document.documentElement.scrollWidth - innerWidth'
-    visited = visit(page, width=width, scheme=scheme, scripts=[COUNT_PAINTED, overflow])
-    assert visited.errors == []
-    assert {request.partition(':')[0] for request in visited.requests} <= {'file', 'data', 'blob'}
-    painted, wider = visited.values
+    scripts = {'painted': (COUNT_PAINTED, OVERFLOW)}
+    found = values_by_subject(scripts, visit, page, width=width, scheme=scheme)
+    require_drawn(*found['painted'])
+
+
+def test_the_page_draws_every_chart_on_a_phone(dark: Values) -> None:
+    require_drawn(*dark['painted'])
+
+
+def require_drawn(painted: Sequence[int], wider: int) -> None:
+    """Require all charts, by the numbers of their colours, and no page wider than the window."""
     assert len(painted) == CHARTS
     assert min(painted) > 20
     assert wider <= 0
@@ -155,33 +251,18 @@ def test_a_print_of_five_runs_has_four_pages_at_most_with_the_definitions(
     assert visited.values[3] is False
 
 
-POINT = """((name, share) => {
-  const chart = Bokeh.documents[0].roots().find((each) => each.name === name);
-  const {el, frame} = [...Bokeh.index].find((each) => each.model === chart);
-  const line = chart.renderers.find((each) => each.name === 'ls8');
-  const {t, [name]: values} = line.data_source.data;
-  const sample = Math.round(share * t.length);
-  el.scrollIntoView({block: 'center'});
-  return new Promise((done) => setTimeout(() => {
-    const {left, top} = el.getBoundingClientRect();
-    const [clientX, clientY] = [left + frame.x_scale.compute(t[sample]),
-      top + frame.y_scale.compute(values[sample]) - OFF];
-    el.dispatchEvent(new PointerEvent('pointermove', {clientX, clientY, bubbles: true}));
-    const tip = document.getElementById('tip');
-    done([tip.hidden, tip.innerText, t[sample], values[sample]]);
-  }, 100));
-})('w_sr', 0.25)"""
+@pytest.mark.nightly
+def test_the_pointer_shows_the_nearest_curve_on_a_screen(page: Path, visit: Visitor) -> None:
+    require_pointed(*values_by_subject({'pointed': POINTED}, visit, page)['pointed'])
 
 
-@pytest.mark.parametrize('width', sampled([PHONE_PX, 1280], every=2))
-def test_the_pointer_shows_the_nearest_curve_with_value_and_unit(
-    page: Path, width: int, visit: Visitor
-) -> None:
-    near, far = POINT.replace('OFF', '0'), POINT.replace('OFF', '-150')
-    scroll = "dispatchEvent(new Event('scroll'))"
-    hidden = "document.getElementById('tip').hidden"
-    visited = visit(page, width=width, scripts=[near, scroll, hidden, far])
-    away, text, time, value = visited.values[0]
+def test_the_pointer_shows_the_nearest_curve_with_value_and_unit(dark: Values) -> None:
+    require_pointed(*dark['pointed'])
+
+
+def require_pointed(near: list[Any], _: object, hidden: bool, far: list[Any]) -> None:
+    """Require the tip at a curve, none once the page has scrolled, and none far from a curve."""
+    away, text, time, value = near
     assert not away
     name, shown, when = text.split('\n')
     assert (name, when) == ('ls8', f'at {time:.2f} s')
@@ -189,35 +270,15 @@ def test_the_pointer_shows_the_nearest_curve_with_value_and_unit(
     assert shown.endswith(' rpm')
     number = float(shown.split()[2].replace('−', '-'))
     assert number == pytest.approx(value, rel=1e-3)
-    assert visited.values[2] is True
-    assert visited.values[3][0] is True
-    assert visited.errors == []
+    assert hidden is True
+    assert far[0] is True
 
 
-def test_a_run_is_switched_off_in_all_charts(page: Path, visit: Visitor) -> None:
-    click = "document.querySelector('.chip').click()"
-    count = "document.getElementById('count').textContent"
-    heights = """new Promise((done) => {
-      const look = () => {
-        const ends = Bokeh.documents[0].roots().map((chart) => chart.y_range.end);
-        if (ends.every(Number.isFinite)) done(ends); else setTimeout(look, 10);
-      };
-      look();
-    })"""
-    none = "document.querySelector('[data-show=none]').click()"
-    everything = "document.querySelector('[data-show=all]').click()"
-    scripts = [heights, SHOWN_LINES, click, SHOWN_LINES, count, none, SHOWN_LINES]
-    scripts += [everything, SHOWN_LINES, heights]
-    visited = visit(page, scripts=scripts)
-    assert (visited.values[1], visited.values[3], visited.values[6]) == (
-        3 * TIME_CHARTS,
-        2 * TIME_CHARTS,
-        0,
-    )
-    assert visited.values[4] == '2 of 3 runs shown'
-    assert visited.values[8] == 3 * TIME_CHARTS
-    assert visited.values[9] == visited.values[0]
-    assert visited.errors == []
+def test_a_run_is_switched_off_in_all_charts(light: Values) -> None:
+    heights, every, _, fewer, count, _, none, _, again, heights_again = light['switched']
+    assert (every, fewer, none, again) == (3 * TIME_CHARTS, 2 * TIME_CHARTS, 0, 3 * TIME_CHARTS)
+    assert count == '2 of 3 runs shown'
+    assert heights_again == heights
 
 
 @pytest.mark.nightly
@@ -231,50 +292,25 @@ def test_the_time_axis_is_one_for_all_charts(page: Path, visit: Visitor) -> None
     assert visited.values[2] == [[0.6, 1.7]] * TIME_CHARTS
 
 
-def test_the_switch_and_the_system_choose_the_colours(page: Path, visit: Visitor) -> None:
-    line = 'Bokeh.documents[0].roots()[0].renderers[0].glyph.line_color.value'
-    body = 'getComputedStyle(document.body).backgroundColor'
-    click = "document.getElementById('theme').click()"
-    dark = visit(page, scheme='dark', scripts=[line, body])
-    light = visit(page, scheme='light', scripts=[line, body, click, click, line, body])
-    assert dark.values != light.values[:2]
-    assert light.values[4:] == dark.values
-    assert light.errors == []
+def test_the_switch_and_the_system_choose_the_colours(dark: Values, light: Values) -> None:
+    assert dark['colours'] != light['colours'][:2]
+    assert light['colours'][4:] == dark['colours']
 
 
-def test_a_table_sorts_by_a_pressed_heading(page: Path, visit: Visitor) -> None:
-    press = "document.querySelectorAll('.summary .sort')[1].click()"
-    order = """[...document.querySelectorAll('.summary tbody th .run')].map((run) =>
-      run.textContent.trim())"""
-    enter = """document.querySelectorAll('.summary .sort')[1].dispatchEvent(
-      new KeyboardEvent('keydown', {key: 'Enter', bubbles: true, cancelable: true}))"""
-    lost_on_paper = "document.querySelectorAll('thead button').length"
-    visited = visit(page, scripts=[order, press, order, enter, order, lost_on_paper])
-    assert visited.values[0] == ['pi', 'ls8', 'hinf1']
-    assert visited.values[2] == ['ls8', 'hinf1', 'pi']
-    assert visited.values[4] == ['pi', 'hinf1', 'ls8']
-    assert visited.values[5] == 0
+def test_a_table_sorts_by_a_pressed_heading(light: Values) -> None:
+    first, _, pressed, _, entered, lost_on_paper = light['sorted']
+    assert first == ['pi', 'ls8', 'hinf1']
+    assert pressed == ['ls8', 'hinf1', 'pi']
+    assert entered == ['pi', 'hinf1', 'ls8']
+    assert lost_on_paper == 0
 
 
-def test_the_two_figures_of_the_pareto_view_are_chosen(page: Path, visit: Visitor) -> None:
-    points = """(() => {
-      const {below, left, renderers: [{data_source: {data}}]} =
-        Bokeh.documents[0].roots().find((chart) => chart.name === 'pareto');
-      return [['x', 'y', 'ring'].map((name) => [...data[name]]),
-        [below[0].axis_label, left[0].axis_label]];
-    })()"""
-    choose = """['peak_jerk_m_s3', 'friction_work_j'].forEach((name, index) => {
-      const select = document.querySelectorAll('.pareto-choice select')[index];
-      select.value = name;
-      select.dispatchEvent(new Event('change'));
-    })"""
-    visited = visit(page, scripts=[points, choose, points])
-    ((across, up, rings), titles), _, (after, titles_after) = visited.values
+def test_the_two_figures_of_the_pareto_view_are_chosen(light: Values) -> None:
+    ((across, up, rings), titles), _, (after, titles_after) = light['chosen']
     assert titles_after == titles[::-1]
     assert len(across) == 3
     assert any(rings)
     assert after == [up, across, rings]
-    assert visited.errors == []
 
 
 @pytest.mark.nightly
