@@ -129,6 +129,7 @@ def save_figure(figure: 'Figure', folder: Path, name: str) -> None:
     rows = zip_longest(*cells, fillvalue='')  # a shorter column ends in empty cells
     write_text(str(data), csv_text((heading for heading, _ in columns), rows))
     save_chart(figure, picture)
+    figure.set_layout_engine('none')  # the drawing has the places of the picture
     save_chart(figure, drawing)
 
 
