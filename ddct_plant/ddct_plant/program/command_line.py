@@ -10,9 +10,8 @@ import os
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, version
 from pathlib import Path
-from typing import Any, NoReturn, Protocol
+from typing import TYPE_CHECKING, Any, NoReturn, Protocol
 
 from ddct_plant.base.errors import DdctError, printable
 from ddct_plant.base.options import close_name
@@ -25,6 +24,9 @@ from ddct_plant.program.signals import (
     is_first_report,
     stems_from_interrupt,
 )
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 _PROGRAMS = 'ddct.programs'
 """Group of the entry points of what `ddct` starts by its first word."""
@@ -48,6 +50,9 @@ _ADVICE = {
 
 def package_version() -> str:
     """Return the version of the installed packages, or 'unknown' in a bare source tree."""
+    # Only here: it takes a tenth of the processor time in which a node starts.
+    from importlib.metadata import PackageNotFoundError, version
+
     try:
         return version('ddct_plant')
     except PackageNotFoundError:
@@ -71,21 +76,23 @@ def main() -> int:
     return run_program(name, start, None)
 
 
-def programs() -> dict[str, EntryPoint]:
+def programs() -> 'dict[str, EntryPoint]':
     """Return the programs of `ddct` by name; of two alike the first on Python's path."""
     return _points(_PROGRAMS)
 
 
-def scripts() -> dict[str, EntryPoint]:
+def scripts() -> 'dict[str, EntryPoint]':
     """Return what `ros2 run` starts, by name; of two alike the first on Python's path."""
     return _points(_SCRIPTS)
 
 
-def _points(group: str) -> dict[str, EntryPoint]:
+def _points(group: str) -> 'dict[str, EntryPoint]':
+    from importlib.metadata import entry_points
+
     return {point.name: point for point in reversed(tuple(entry_points(group=group)))}
 
 
-def load_program(point: EntryPoint) -> Callable[[], int]:
+def load_program(point: 'EntryPoint') -> Callable[[], int]:
     """Import a program; raise DdctError where a package that it needs is not installed."""
     try:
         loaded: Callable[[], int] = point.load()
@@ -130,6 +137,17 @@ def number_in(unit: str = '') -> Callable[[str], float]:
     return number
 
 
+class _Version(argparse.Action):
+    """Option that prints the version, which is read only then, and ends the program."""
+
+    def __init__(self, option_strings: Sequence[str], dest: str, help: str) -> None:
+        super().__init__(option_strings, dest, nargs=0, default=argparse.SUPPRESS, help=help)
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        parser._print_message(f'{package_version()}\n', sys.stdout)
+        parser.exit()
+
+
 class ProgramParser(argparse.ArgumentParser):
     """Argument parser with --version, whose help fits the terminal and whose errors are a line."""
 
@@ -138,9 +156,7 @@ class ProgramParser(argparse.ArgumentParser):
         options.setdefault('formatter_class', HelpFormatter)
         super().__init__(**options)
         self.register('type', float, number_in())
-        self.add_argument(
-            '--version', action='version', version=package_version(), help='print it, and end'
-        )
+        self.add_argument('--version', action=_Version, help='print it, and end')
 
     def error(self, message: str) -> NoReturn:
         """End the program with the exit code 2 and one line on standard error."""
