@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 import support
-from support.independent_figures import independent_figures
+from support.independent_figures import Figure, independent_figures
 
 from ddct_bringup.api import Run, run
 from ddct_bringup.metrics.metric import finite
@@ -34,6 +34,12 @@ def made(request, tmp_path_factory) -> Run:
     return run(controller, out=tmp_path_factory.mktemp('bags'), **options)
 
 
+@pytest.fixture(scope='module')
+def found(made: Run) -> dict[str, Figure]:
+    """Return the figures that the independent script computes from that bag."""
+    return independent_figures(made.path)
+
+
 def agree(found: float | None, expected: float | None) -> bool:
     """Return whether both are equal to 1e-9, or both have no value."""
     if found is None or expected is None:
@@ -41,8 +47,7 @@ def agree(found: float | None, expected: float | None) -> bool:
     return found == pytest.approx(expected, rel=1e-9, abs=1e-9)
 
 
-def test_every_figure_of_a_run_is_that_of_the_independent_script(made):
-    found = independent_figures(made.path)
+def test_every_figure_of_a_run_is_that_of_the_independent_script(made, found):
     ours = {
         key: value
         for key, value in made.figures.items()
@@ -53,10 +58,9 @@ def test_every_figure_of_a_run_is_that_of_the_independent_script(made):
         assert agree(found[key], value), (key, found[key], value)
 
 
-def test_what_a_controller_does_with_the_demand_is_that_of_the_independent_script(made):
+def test_what_a_controller_does_with_the_demand_is_that_of_the_independent_script(made, found):
     engagement = engagement_of(made.recording, None)
     command = EngineCommand.of(engagement, packaged_limits().rules)
-    found = independent_figures(made.path)
     keys = ('withheld_s', 'added_s', 'delivered_at_end')
     if command is None:
         assert all(found[key] is None for key in keys)

@@ -49,7 +49,8 @@ class IndependentBag:
         """Read a bag, given by its folder or by the file in it."""
         folder = bag if bag.is_dir() else bag.parent
         text = (folder / 'metadata.yaml').read_text(encoding='utf-8')
-        information = yaml.safe_load(text)['rosbag2_bagfile_information']
+        loader = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
+        information = yaml.load(text, loader)['rosbag2_bagfile_information']
         messages: dict[str, list[Any]] = defaultdict(list)
         with (folder / information['relative_file_paths'][0]).open('rb') as stream:
             reader = make_reader(stream, decoder_factories=[DecoderFactory()])

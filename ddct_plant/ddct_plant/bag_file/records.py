@@ -10,10 +10,10 @@ under a checksum of its chunk, of the data or of the summary. A file without one
 import io
 import struct
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
@@ -65,8 +65,8 @@ class BagRecords:
     """Whether the file has no footer, so that it holds the beginning of a run alone."""
     schemas: dict[int, Schema] = field(default_factory=dict)
     channels: dict[int, Channel] = field(default_factory=dict)
-    information: dict[str, Any] = field(default_factory=dict)
-    """Content of the last readable `rosbag2` metadata record."""
+    _metadata: list[Mapping[str, str]] = field(default_factory=list, repr=False)
+    """Contents of the `rosbag2` metadata records."""
     _data: list[Chunk | Message] = field(default_factory=list, repr=False)
 
     @property
@@ -74,10 +74,12 @@ class BagRecords:
         """Resolved names of the topics that have a channel."""
         return {channel.topic for channel in self.channels.values()}
 
-    @property
+    @cached_property
     def custom_data(self) -> dict[str, str]:
-        """Custom data of the bag: the recorder's description of the run."""
-        custom = self.information.get('custom_data')
+        """Custom data of the bag, the recorder's description of the run, in its last metadata."""
+        # Those before the last readable ones are not parsed: that takes longer than all messages.
+        readable = filter(None, map(information_of, reversed(self._metadata)))
+        custom = next(readable, {}).get('custom_data')
         if not isinstance(custom, dict):
             return {}
         return {str(key): str(value) for key, value in custom.items()}
@@ -116,7 +118,7 @@ class BagRecords:
         elif isinstance(record, Channel):
             self.channels.setdefault(record.id, record)
         elif isinstance(record, Metadata) and record.name == RECORD_NAME:
-            self.information = information_of(record.metadata) or self.information
+            self._metadata.append(record.metadata)
         elif isinstance(record, Chunk | Message):
             self._data.append(record)
         return isinstance(record, DataEnd)
