@@ -16,6 +16,7 @@ from ddct_bringup.api import (
     document,
     thesis_figure,
 )
+from ddct_bringup.documents.chart import Chart, legend
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -47,8 +48,9 @@ def test_the_figure_of_a_campaign_has_a_curve_of_each_controller(tmp_path: Path)
         leave_out_figure(patch)
         campaign(SPEC, tmp_path / 'out', workers=1)
     assert {'pi', 'ls8'} <= curves(campaign_figure(tmp_path / 'out'))
-    shown = document(tmp_path / 'out').figure('Distributions')._repr_mimebundle_()
-    assert shown['image/png'][:4] == b'\x89PNG'
+    shown = document(tmp_path / 'out').figure('Distributions').draw()
+    assert isinstance(shown, Chart)  # which a notebook shows as a picture
+    assert {'pi', 'ls8'} <= {key.label for key in legend(shown)}
 
 
 def test_the_figure_of_a_folder_without_a_campaign_is_refused(tmp_path: Path) -> None:

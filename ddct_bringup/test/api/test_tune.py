@@ -16,8 +16,8 @@ def test_the_front_and_the_trials_are_tables(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     leave_out_pictures(monkeypatch)
-    found = tune('pi', {**CONTENT, 'trials': 10}, tmp_path / 'out', workers=1)
-    assert list(found.trials.index) == list(range(10))
+    found = tune('pi', {**CONTENT, 'trials': 4}, tmp_path / 'out', workers=1)
+    assert list(found.trials.index) == list(range(4))
     assert found.front.index.isin(found.trials.index).all()
     best = found.front.loc[found.result.best]
     name = next(iter(CONTENT['objectives']))
@@ -25,5 +25,5 @@ def test_the_front_and_the_trials_are_tables(
     assert run(str(found.best), duration=0.7).valid
     (first, *_) = document(tmp_path / 'out').table('The best trial, and before').rows
     assert first
-    again = tune('pi', {**CONTENT, 'trials': 10}, tmp_path / 'out', workers=1, resume=True)
+    again = tune('pi', {**CONTENT, 'trials': 4}, tmp_path / 'out', workers=1, resume=True)
     assert again.front.equals(found.front)
