@@ -37,8 +37,8 @@ VARIANTS: tuple[tuple[str, dict], ...] = (
     ('mpc_preview', {'load_known': False, 'preview': False}),
     ('mpc_offset_free', LIMITED),
     ('mpc_torsion', {}),
-    ('mpc_wear', {}),
     ('mpc_wear', LIMITED),
+    ('mpc_wear', {}),
 )
 IDS = [f'{name}-{len(options)}' for name, options in VARIANTS]
 
