@@ -91,6 +91,8 @@ def test_radius_and_mass_of_another_car_come_from_its_speeds(
     options = ['--from', str(log), '--out', str(out), '--fix', 'engine_damping']
     assert main([*options, '--json', str(tmp_path / 'fit.json')]) == 0
     content = json.loads((tmp_path / 'fit.json').read_text())
+    fixed = [row['name'] for row in content['parameters'] if row['state'] == 'fixed']
+    assert fixed == ['engine_damping']
     radius = content['wheel_radius']
     assert radius['state'] == 'measured'
     assert radius['measured']['lowest_m'] <= RADIUS_M <= radius['measured']['highest_m']
