@@ -149,6 +149,8 @@ class Maps:
         self._heights: dict[Signs, np.ndarray] = {}
         """Rows of the matrix of each run in a mode, (R,); 0 where it is not made."""
         self._stacks: dict[tuple[Signs, int], np.ndarray] = {}
+        self._latest: dict[tuple[Signs, int], tuple[np.ndarray, np.ndarray]] = {}
+        """Runs that were in a mode most recently, and their matrices."""
 
     def speeds(self, state: np.ndarray) -> np.ndarray:
         """Return the sizes of the speeds whose difference a slip is, (R, N)."""
@@ -169,7 +171,15 @@ class Maps:
                 some = np.arange(len(self._integrators))[runs][heights == height]
             first = 0 if isinstance(some, slice) else int(some[0])
             at_once = self._integrators[first].maps[signs]
-            yield some, at_once, self._stacks[signs, height][some]
+            yield some, at_once, self._of_runs((signs, height), some)
+
+    def _of_runs(self, key: tuple[Signs, int], runs: Runs) -> np.ndarray:
+        """Return the matrices of some runs; copied once while these are in the mode together."""
+        if isinstance(runs, slice):
+            return self._stacks[key]
+        if key not in self._latest or not np.array_equal(self._latest[key][0], runs):
+            self._latest[key] = runs, self._stacks[key][runs]
+        return self._latest[key][1]
 
     def prepare_modes_of(self, run: int) -> None:
         """Prepare the modes that a run has had for all runs, which takes each less than alone."""
