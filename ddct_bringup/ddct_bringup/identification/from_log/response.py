@@ -157,21 +157,27 @@ class _ModeResponse:
         self._first = stretch.torques[:-1, torque]
         rises = np.diff(stretch.torques[:, torque])
         self._rise = 0.0 * rises if stretch.held[torque] else rises
-        decay, level, slope = self._weights(self._step)
+        decay, level, slope = _kept_weights(pole, self._step)
         pushed = np.concatenate([[0.0], level * self._first + slope * self._rise])
         self._state = scipy.signal.lfilter([1.0], [1.0, -decay], pushed)
 
     def at(self, place: _Place) -> np.ndarray:
         """Return the state of the mode at the samples, (n,)."""
-        decay, level, slope = self._weights(place.rest_s)
+        weights = _kept_weights if isinstance(place.rest_s, float) else _weights
+        decay, level, slope = weights(self._pole, place.rest_s)
         rise = self._rise[place.before]
         driven = level * self._first[place.before] + slope * (place.rest_s / self._step) * rise
         return decay * self._state[place.before] + driven
 
-    def _weights(self, time_s: Any) -> tuple[Any, Any, Any]:
-        """Return e^(p t), and the weights of the torque's level and of its rise in the time t."""
-        phi_1, phi_2 = _phi(self._pole * time_s)
-        return 1.0 + self._pole * time_s * phi_1, time_s * phi_1, time_s * phi_2
+
+def _weights(pole: complex, time_s: Any) -> tuple[Any, Any, Any]:
+    """Return e^(p t), and the weights of the torque's level and of its rise in the time t."""
+    phi_1, phi_2 = _phi(pole * time_s)
+    return 1.0 + pole * time_s * phi_1, time_s * phi_1, time_s * phi_2
+
+
+_kept_weights = lru_cache(maxsize=_KEPT)(_weights)
+"""The same for one time, which the responses to all torques share."""
 
 
 @lru_cache(maxsize=_KEPT)
