@@ -13,7 +13,6 @@ PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
 MAPPINGS = {'dict', 'Mapping', 'MutableMapping'}
 FILES = {
     'ddct_plant/bag_file/metadata.py': 'metadata.yaml of a bag',
-    'ddct_plant/bag_file/records.py': 'metadata in an MCAP file',
     'ddct_bringup/bag/writer.py': 'metadata of a bag',
     'ddct_bringup/benchmark/cases.py': 'cases of a benchmark, YAML',
     'ddct_bringup/benchmark/other_car.py': 'cases of a benchmark, YAML',

@@ -40,7 +40,7 @@ codes, refused = {}, {}
 for line in sys.argv[1].splitlines():
     sys.argv[1:] = line.split()
     codes[line] = main()
-swept = sweep([Mine], {'wear_gain': [0.9, 1.1]}, duration=0.3, workers=1)
+swept = sweep([Mine], {'wear_gain': [0.9, 1.1]}, duration=0.3)
 for package in ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup'):
     found = importlib.import_module(package)
     for module in pkgutil.walk_packages(found.__path__, f'{package}.'):

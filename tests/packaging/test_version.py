@@ -4,13 +4,12 @@
 
 import importlib
 import re
-import subprocess
-import sys
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
 import yaml
+from support.declared import setup_of
 
 from ddct_plant.graph.node_reports import run_info_pairs
 
@@ -34,19 +33,11 @@ def test_the_four_packages_have_one_version() -> None:
     assert len({version_of(package) for package in PACKAGES}) == 1
 
 
-@pytest.mark.process
 @pytest.mark.parametrize('package', PACKAGES)
 def test_setup_takes_the_version_from_package_xml(package: str) -> None:
     text = (ROOT / package / 'setup.py').read_text(encoding='utf-8')
     assert version_of(package) not in text
-    told = subprocess.run(
-        [sys.executable, 'setup.py', '--version'],
-        cwd=ROOT / package,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert told.stdout.split()[-1] == version_of(package)
+    assert setup_of(package)['version'] == version_of(package)
 
 
 def test_the_newest_version_of_the_changelog_is_this_one() -> None:
