@@ -114,7 +114,8 @@ def _alike(settings: Sequence[RunSettings], stack: Stack) -> Iterator[tuple[int,
     groups: dict[tuple[Any, ...], list[int]] = defaultdict(list)
     for index in np.flatnonzero(~stack.unsure).tolist():
         scenario = settings[index].scenario
-        key = int(stack.last[index]), scenario.steps, scenario.score_window_s
+        start = scenario.control_start_step
+        key = int(stack.last[index]), scenario.steps, start, scenario.score_window_s
         groups[key].append(index)
     for (length, *_), group in groups.items():
         yield length, np.array(group)

@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from batch_runs import bits_of, engine, friction, road, sensors, short_run, some
-from step_by_step import batch_of, step_by_step
+from step_by_step import LIMITS, batch_of, step_by_step
 
 from ddct_bringup.batch.batchable import why_not_batchable
+from ddct_bringup.batch.run_batch import run_batch
 from ddct_bringup.batch.simulate import loop_kind
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
@@ -136,13 +137,13 @@ def test_a_run_does_not_depend_on_the_rest_of_a_batch(size):
     assert mixed == [together[place] for place in order]
 
 
-def test_runs_of_other_drives_are_in_one_batch_and_change_no_bit():
+def test_runs_of_other_drives_are_in_one_batch_and_change_no_bit_or_figure():
     starts = {'thesis_sticking': 0.2, 'launch': 0.1, 'tip_in': 0.3}
     runs = []
     for scenario, start_s in starts.items():
         changes = {
-            **{'duration_s': start_s + 0.5, 'control_start_s': start_s},
-            'score_window_s': [start_s, start_s + 0.4],
+            **{'duration_s': 0.8, 'control_start_s': start_s},
+            'score_window_s': [0.3, 0.7],
         }
         settings = RunSettings(KnownSettings(load_scenario(scenario, changes)))
         runs.append((settings, make_controller('ls8', settings.known)))
@@ -152,3 +153,4 @@ def test_runs_of_other_drives_are_in_one_batch_and_change_no_bit():
     assert {each.engine_limits is None for each in described} == {True, False}
     assert len({loop_kind(settings) for settings, _ in runs}) == 1
     assert bits_of(runs) == [bits_of([run])[0] for run in runs]
+    assert run_batch(runs, LIMITS) == [run_batch([run], LIMITS)[0] for run in runs]
