@@ -5,6 +5,8 @@
 import json
 
 import pytest
+from drawn_charts import leave_out_time_charts
+from drawn_here import draw_here
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.programs.compare import main as compare
@@ -48,7 +50,9 @@ def test_it_gives_to_the_bit_the_run_of_the_same_controller_in_the_registry(file
     assert from_file.sha256() == run_headless(SETTINGS, 'ls8').sha256()
 
 
-def test_compare_scores_it_beside_the_others(file, tmp_path, capsys):
+def test_compare_scores_it_beside_the_others(file, tmp_path, capsys, monkeypatch):
+    draw_here(monkeypatch)
+    leave_out_time_charts(monkeypatch)
     out = tmp_path / 'runs'
     names = f'ls8,{file}'
     options = ['--floors', 'none', '--headless', '--out', str(out)]
