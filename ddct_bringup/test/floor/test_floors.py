@@ -18,7 +18,7 @@ from ddct_bringup.floor.case import case_at, case_of_run
 from ddct_bringup.floor.computed_floor import DEMAND, LIMITS
 from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.coverage import FloorWithdrawnError, require_not_below, why_outside
-from ddct_bringup.floor.floor import floor_of, floors_of_run
+from ddct_bringup.floor.floor import floor_of, floor_of_case, floors_of_run
 from ddct_bringup.floor.friction_work import least_friction_work
 from ddct_bringup.floor.front import least_lock_time
 from ddct_bringup.floor.lock import Lock, final_lock_of, lock_of
@@ -251,11 +251,17 @@ def test_a_floor_is_computed_by_one_thread_unless_the_user_wants_more(
         monkeypatch.setenv('OPENBLAS_NUM_THREADS', named)
     else:
         monkeypatch.delenv('OPENBLAS_NUM_THREADS', raising=False)
-    with threadpool_limits(3 - expected, user_api='blas'):
-        with pytest.raises(ParameterError, match='is not defined'):
-            floor_of(settings_of(), 'peak_jerk', 0.9)
-        assert {*thread_numbers()} == {3 - expected}
-    assert {*during} == {expected}
+    case, _ = case_and_run(*RUNS[0])
+    for compute in (
+        lambda: floor_of(settings_of(), 'peak_jerk', 0.9),
+        lambda: floor_of_case(case, 'peak_jerk'),
+    ):
+        during.clear()
+        with threadpool_limits(3 - expected, user_api='blas'):
+            with pytest.raises(ParameterError, match='is not defined'):
+                compute()
+            assert {*thread_numbers()} == {3 - expected}
+        assert {*during} == {expected}
 
 
 def thread_numbers():
