@@ -26,7 +26,7 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 LIMITS = packaged_limits()
-LIMITED = {'highest_torque_n_m': 220.0, 'torque_rate_n_m_s': 1500.0, 'lowest_slip_rpm': 0.0}
+LIMITED = {'highest_torque_n_m': 220.0, 'torque_rate_n_m_s': 1500.0, 'lowest_slip_rpm': 30.0}
 VARIANTS: tuple[tuple[str, dict], ...] = (
     ('mpc1', {}),
     ('mpc2', {}),
