@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Trials of `ddct check`: their measurements, times and scaled torques."""
 
+from contextlib import nullcontext
 from typing import Any
 
 import numpy as np
@@ -63,6 +64,20 @@ def test_more_late_updates_fail_however_quick_the_quickest_are(
 ) -> None:
     with pytest.raises(CheckFailedError, match='95% within 20.000 ms, of 100 updates: it must be'):
         update_time(timed(late, monkeypatch))
+
+
+@pytest.mark.parametrize(('slow', 'further'), [(0, 0), (1, 1), (2, 2), (9, 2)])
+def test_a_controller_that_seems_slow_has_up_to_two_further_trials(
+    slow: int, further: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    subject = Subject('pi', SETTINGS.known, OutputMonitor())
+    times_s = [LATE_S] * slow + [QUICK_S] * 10
+    trials = iter([ClosedLoopLog(update_s=[each] * 100) for each in times_s])
+    subject.closed_loop = next(trials)
+    monkeypatch.setattr('ddct_controllers.check.loops.closed_trial', lambda *_: next(trials))
+    with nullcontext() if slow <= further else pytest.raises(CheckFailedError, match='20.000 ms'):
+        update_time(subject)
+    assert len([*trials]) == len(times_s) - 1 - further
 
 
 class ConstantRequest(Controller):

@@ -121,6 +121,12 @@ def test_the_request_leaves_without_a_jump_and_rises_along_the_ramp(own):
     assert controller.open_loop_torques == pytest.approx(found[DWELL:]), 'whole request'
 
 
+def test_the_margin_may_come_slowly():
+    scenario = load_scenario('thesis_sticking', ['closing.ramp_n_m_s=0.5'])
+    found = torques(answers([ALIKE] * 20, settings=RunSettings(KnownSettings(scenario))))
+    assert np.diff(found)[DWELL:] == pytest.approx(0.005, abs=1e-9)
+
+
 def test_the_margin_follows_the_engine_torque_at_once():
     rising = [*[ALIKE] * 60, *[replace(ALIKE, engine_torque=200.0)] * 60]
     found = torques(answers(rising))

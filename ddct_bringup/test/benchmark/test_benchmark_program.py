@@ -3,6 +3,7 @@
 """A benchmark shows a controller that remembers, gives the same bytes, and can be verified."""
 
 import html
+import re
 import shlex
 import shutil
 import struct
@@ -149,6 +150,15 @@ def test_the_page_has_what_counts_what_nobody_gains_by_and_what_stays_open(place
     assert words == {state.replace('_', ' ') for state in STATES}
     for text in (*states, *NO_GAIN, left_open_here(), f'no controller dominates {NAME}: 6 cases'):
         assert text in page
+
+
+def test_names_in_the_first_column_of_a_table_stand_left(place: Path) -> None:
+    """The class `num` is that of cells that stand right, below the heading of their number."""
+    page = (place / 'first' / PAGE).read_text(encoding='utf-8')
+    heads = re.findall(r'<th scope="row"( class="[^"]*")?[^>]*>([^<]*)', page)
+    assert {text for _, text in heads} >= {NAME, 'pi', 'ls8', 'hinf1'}
+    right = {text for classes, text in heads if 'num' in classes}
+    assert [text for text in right if not text.isdecimal()] == []
 
 
 def test_the_result_is_read_as_its_record_and_written_as_it_was(place: Path) -> None:

@@ -6,6 +6,7 @@ from decimal import Decimal, localcontext
 
 import numpy as np
 import pytest
+from numpy.polynomial import Polynomial
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.hybrid.friction_system import FrictionSystem
@@ -79,3 +80,21 @@ def test_an_angle_counts_where_its_speed_drives_hardly_anything_else(coupling):
     rates = np.array([[0.0, 70.0, 0.0], [coupling, 0.0, 0.0], [1e-3, 0.0, 0.0]])
     assert norm(balanced(rates)) < 1.0
     assert norm(slipping(rates).end[:3, :3] - exponential(rates)) < 2e-14
+
+
+def test_guards_are_checked_at_the_nodes_of_a_piece_and_on_their_tangents_halfway():
+    """Of an oscillator of 1.41 rad/s whose mass slips on the ground, over 1 s."""
+    column = np.array([[0.0], [1.0]])
+    oscillator = np.array([[0.0, 1.0], [-2.0, 0.0]])
+    system = FrictionSystem(oscillator, np.zeros((2, 0)), -column, column.T)
+    flow = ModeFlow(HeldElements(system, (False,), 1.0), (1,))
+    assert flow.steps == 5
+    course = flow.course(np.array([1.0, 0.3]), np.array([0.2, 0.1]))
+    guard = Polynomial(course.guards[0])
+    half = guard.deriv() / 10.0
+    expected = []
+    for node in range(5):
+        first, last = node / 5.0, (node + 1) / 5.0
+        expected += [guard(first), guard(first) + half(first), guard(last) - half(last)]
+    checks = flow.guard_checks()[:, 0] @ course.y
+    assert checks == pytest.approx([*expected, guard(1.0)], rel=1e-12)

@@ -51,6 +51,11 @@ def test_a_lag_attenuates_by_its_ratio_and_delays_by_its_lowest_phase():
     )
 
 
+def test_the_ratio_of_a_network_may_be_a_little_above_one():
+    gains = [network(1.0, 1.25).frequency_response(1e6) for network in (lead_network, lag_network)]
+    assert np.abs(gains) == pytest.approx([1.25, 0.8], rel=1e-9)
+
+
 def test_the_gain_for_a_crossover_keeps_sign_zeros_and_poles():
     shape, plant = PRINTED_CONTROLLERS['ls7'], plant_in_rpm()
     changed = with_crossover(shape, plant, 3.5)
