@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from by_schema import require_schema
-from drawn_here import draw_here
 from support.logs import identify, written
 from support.other_car import COLUMNS, TRUE, drive, write_csv
 from support.runs import expected, plan, record
@@ -60,10 +59,7 @@ def test_a_foreign_log_gives_tables_json_and_a_scenario_that_runs(
 
 
 @pytest.mark.usefixtures('no_page')
-def test_compare_runs_the_car_and_drive_at_once(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    draw_here(monkeypatch)
+def test_compare_runs_the_car_and_drive_at_once(folder: Path) -> None:
     assert identify(folder, '--out', str(folder / 'mine')) == 0
     files = [f'--{noun}={folder / "mine" / f"drive_{noun}.yaml"}' for noun in ('car', 'drive')]
     out = folder / 'compared'

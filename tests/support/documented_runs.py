@@ -13,7 +13,6 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from drawn_here import draw_here
 
 from ddct_bringup.run import execution
 from ddct_bringup.run.plan import RunPlan
@@ -110,7 +109,6 @@ def shared_runs(
     monkeypatch.chdir(workplace)
     monkeypatch.syspath_prepend(workplace / 'site')
     monkeypatch.setattr(execution, 'execute', run_once)
-    draw_here(monkeypatch)
     yield workplace
     for module in ('my_slip', 'my_package', 'my_package.control'):
         sys.modules.pop(module, None)
