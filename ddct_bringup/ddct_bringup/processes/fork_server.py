@@ -110,7 +110,8 @@ def start_processes(
     Have the fork server start all of these processes.
 
     Raise DdctError when it fails or takes longer than `START_S`, and KeyboardInterrupt when
-    `stopped()` becomes true before; then the server is killed, and the next start has another one.
+    `stopped()` becomes true before. A server that does not start them by then is killed, and the
+    next start has another one.
     """
     failures: list[BaseException] = []
     cancelled = threading.Event()

@@ -37,8 +37,8 @@ class HandoverModels:
     """
     The rigid cars of R shifts, the counterpart of `HandoverModel`; every value is (R,).
 
-    All shifts start at one step. C_load of everything that resists is
-    given with each measurement, since the architecture has the same.
+    All shifts start at one step. C_load of everything that resists is given with each measurement,
+    since the architecture has the same.
     """
 
     def __init__(self, runs: Sequence[KnownSettings]) -> None:
