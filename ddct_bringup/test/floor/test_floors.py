@@ -15,7 +15,7 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 from ddct_bringup.floor import computed_floor
 from ddct_bringup.floor.case import case_at, case_of_run
-from ddct_bringup.floor.computed_floor import DEMAND, LIMITS
+from ddct_bringup.floor.computed_floor import DEMAND, LIMITS, ComputedFloor
 from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.coverage import FloorWithdrawnError, require_not_below, why_outside
 from ddct_bringup.floor.floor import floor_of, floor_of_case, floors_of_run
@@ -26,7 +26,7 @@ from ddct_bringup.floor.metric_units import METRICS, OF_STICK_SLIP
 from ddct_bringup.floor.point import point_of
 from ddct_bringup.floor.program.linear_program import RAY
 from ddct_bringup.floor.replays import attained, replay
-from ddct_bringup.floor.values import value_of
+from ddct_bringup.floor.values import Floor, Proof, value_of
 from ddct_bringup.manifest import code
 from ddct_bringup.run.execution import recording_in_memory
 from ddct_bringup.run.headless import run_headless
@@ -233,6 +233,22 @@ def test_a_floor_is_computed_anew_after_a_change_of_any_package(monkeypatch):
 def changed_plant(package):
     """Return the files of a package; those of ddct_plant are other ones."""
     return files('ddct_reference' if package == 'ddct_plant' else package)
+
+
+@pytest.mark.parametrize(
+    ('of_demand', 'of_limits', 'least'),
+    [(2.0, 3.0, 2.0), (3.0, 2.0, 2.0), (2.0, None, 2.0), (None, 3.0, 3.0)],
+)
+def test_the_attained_value_is_the_less_of_runs_with_the_demand_and_with_limits(
+    monkeypatch, of_demand, of_limits, least
+):
+    def found(case, metric, begin):
+        value = of_limits if case.limited else of_demand
+        floor = Floor(metric, 0.9, 1.0, value, Proof(RAY, 1.0, ''), None)
+        return ComputedFloor(floor, limited=not case.limited)
+
+    monkeypatch.setattr('ddct_bringup.floor.floor.computed_floor', found)
+    assert floor_of(settings_of(), 'peak_jerk', 0.9).attained == least
 
 
 @pytest.mark.usefixtures('own_cache')
