@@ -10,7 +10,7 @@ from support.runs import plan
 
 from ddct_bringup.run.plan import RunPlan
 from ddct_plant.base.timebase import time_of_step
-from faults.outcome import Observed, Stated
+from faults.outcome import NEVER, Observed, Stated
 
 SHORT, IN_REAL_TIME, LONG = 100, 160, 400
 """Steps of a run; in real time a fault of half a second must be over before the end."""
@@ -99,4 +99,5 @@ class Case:
 
     def came_too_late(self, seen: Observed) -> bool:
         """Return whether the run was over before the fault, or the machine too slow."""
-        return self.mode == 'realtime' or (seen.same_hash and not seen.error)
+        over = seen.same_hash and not seen.error
+        return self.mode == 'realtime' or over or seen.fault_step == NEVER

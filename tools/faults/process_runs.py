@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import rclpy
 from rclpy.context import Context
@@ -19,6 +20,7 @@ from rclpy.signals import SignalHandlerOptions
 from rosgraph_msgs.msg import Clock
 from waiting import wait_until
 
+from ddct_bringup import processes
 from ddct_bringup.processes import supervisor
 from ddct_bringup.processes.graph_nodes import NodeSpec
 from ddct_bringup.processes.supervisor import Supervisor
@@ -111,14 +113,12 @@ def run_with_fault(case: Case, folder: Path, harm: Callable[[int], None]) -> Obs
             leftovers.note(pid)
         harm(pids[case.target])
 
-    supervisor.Supervisor = Tapped  # type: ignore[misc]
+    tapped = patch.object(processes, 'Supervisor', Tapped)
     try:
-        with _short_patience(), at_step(case.begin, act):
+        with tapped, _short_patience(), at_step(case.begin, act):
             execution.execute(case.run, folder)
     except DdctError as error:
         seen.error = str(error).partition('; its log is')[0]
-    finally:
-        supervisor.Supervisor = Supervisor  # type: ignore[misc]
     seen.read(folder, case.run)
     seen.left = leftovers.found()
     return seen
