@@ -94,6 +94,7 @@ def test_a_message_of_a_type_that_no_topic_has_is_serialised_and_read_too():
     assert same_definition('std_msgs/msg/Float64', '# a number\nfloat64 data\n')
 
 
+@pytest.mark.process
 def test_a_bag_of_our_topics_is_read_without_the_other_types_of_rosbags():
     code = (
         'import sys\n'

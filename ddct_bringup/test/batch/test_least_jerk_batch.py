@@ -13,6 +13,7 @@ from ddct_controllers.registry import make_controller
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
+pytestmark = pytest.mark.slow
 RUNS, STEPS = 60, 260
 
 

@@ -25,6 +25,7 @@ from ddct_controllers.registry import make_controller
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
+pytestmark = pytest.mark.slow
 LIMITS = packaged_limits()
 LIMITED = {'highest_torque_n_m': 220.0, 'torque_rate_n_m_s': 1500.0, 'lowest_slip_rpm': 30.0}
 VARIANTS: tuple[tuple[str, dict], ...] = (

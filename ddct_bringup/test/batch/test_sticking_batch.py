@@ -18,6 +18,7 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
+pytestmark = pytest.mark.slow
 DRIVES = ('launch', 'launch_gentle', 'launch_hill', 'launch_hot', 'tip_in')
 CARS = ('c635', 'c635_no_limits', 'city7')
 ARCHITECTURES = ('detailed', 'detailed', 'feedforward', 'base')

@@ -16,6 +16,7 @@ from ddct_bringup.benchmark.cases import SPECIFICATION
 from ddct_bringup.benchmark.file_names import PAGE
 from ddct_bringup.benchmark.release import ROWS
 
+pytestmark = pytest.mark.slow
 SPEC = """\
 controllers: [pi, ls8]
 seed: 1

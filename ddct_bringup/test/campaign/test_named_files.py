@@ -126,6 +126,7 @@ def test_a_handover_that_changes_meanwhile_ends_the_campaign(tmp_path: Path) -> 
     assert not (out / SHARDS / '00000001.parquet').exists()
 
 
+@pytest.mark.process
 @pytest.mark.parametrize('controller', ['mine.py', 'outer.yaml'])
 def test_a_changed_python_file_is_refused_before_it_runs(tmp_path: Path, controller: str) -> None:
     made = campaign(tmp_path, controllers=[controller], grid={'duration_s': [0.7]})

@@ -49,12 +49,14 @@ def bag(tmp_path):
     )
 
 
+@pytest.mark.process
 def test_bytes_that_are_no_message_of_the_topic_are_refused(bag):
     with refused(DdctError, SLIP.name) as caught:
         bag.write_ticks([(3, {SLIP.name: b'\x00\x01\x00\x00' + bytes(8)})])
     assert f'at stamp {stamp_of_step(3)} ns: a message is no {SLIP.type}' in str(caught.value)
 
 
+@pytest.mark.process
 def test_bytes_without_a_value_are_zero_in_the_bag(bag, tmp_path):
     clean = message(SLIP, 0, 12.5)
     spoiled = clean[:2] + b'\x07\x03' + clean[4:] + b'\xaa' * 8

@@ -24,6 +24,7 @@ def short_pages(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shell, 'report_page', _page)
 
 
+@pytest.mark.process
 def test_another_process_draws_the_page() -> None:
     with pages.drawn_apart() as draw:
         text, _, process = draw('runs', 'evidence', 'limits').rpartition(' in ')
@@ -31,6 +32,7 @@ def test_another_process_draws_the_page() -> None:
     assert int(process) != os.getpid()
 
 
+@pytest.mark.process
 def test_a_page_is_drawn_here_where_that_process_has_ended(monkeypatch) -> None:
     monkeypatch.setattr(pages, '_get_ready', _end)
     with pages.drawn_apart() as draw:

@@ -25,6 +25,7 @@ from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.program import own_process
 from ddct_plant.program.own_process import ProcessEndedError, calling, in_own_process, keep
 
+pytestmark = pytest.mark.process
 WAIT = connection.wait
 FULLY_BUFFERED = 0
 """Mode of C's setvbuf in which what is printed stays in the buffer until that is full."""
