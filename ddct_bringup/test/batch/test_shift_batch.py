@@ -10,7 +10,6 @@ import pytest
 from batch_runs import bits_of, some
 from samples import sampled
 from shifts import SHIFTS
-from step_by_step import batch_of, step_by_step
 
 from ddct_bringup.batch.batchable import why_not_batchable
 from ddct_controllers.handover.laws import HANDOVERS
@@ -98,16 +97,6 @@ def runs(every):
         (name, handover, part) for name in SHIFTS for handover in HANDOVERS for part in PARTS
     ]
     return [drawn(random, *each, duration_s=1.8) for each in drawings[::every]]
-
-
-@pytest.fixture(scope='module')
-def batch(runs):
-    return batch_of(runs)
-
-
-@pytest.fixture(scope='module')
-def serial(runs):
-    return [step_by_step(*run) for run in runs]
 
 
 def assert_same(signals, run):

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from batch_runs import bits_of, engine, friction, road, sensors, short_run, some
-from step_by_step import LIMITS, batch_of, step_by_step
+from step_by_step import LIMITS
 
 from ddct_bringup.batch.batchable import why_not_batchable
 from ddct_bringup.batch.run_batch import run_batch
@@ -62,16 +62,6 @@ def runs():
     found = drawn_runs(4)
     assert len(found) >= 15
     return found
-
-
-@pytest.fixture(scope='module')
-def batch(runs):
-    return batch_of(runs)
-
-
-@pytest.fixture(scope='module')
-def serial(runs):
-    return [step_by_step(*run) for run in runs]
 
 
 def test_signals_events_and_lengths_are_those_of_the_run_step_by_step(runs, batch, serial):
